@@ -1,50 +1,56 @@
 #include "lm/layover.h"
 
-#include "fx/log.h"
+#include "fx/sat.h"
+#include "lm/kernels_clutter.h"
 #include "lm/units.h"
 
-/* Coordinate along the line at which the top of cell i is displayed: i less (top - z0) tan psi /
- * ds. Tops are below 2^29.3 and the lean is below 2^17: products are below 2^47. */
-static int64_t appears_at_cells_q8(const struct lm_layover *l, uint32_t i, int32_t top_m_q14)
+_Static_assert((int)LM_LAYOVER_ROOM == (int)LM_K_LAYOVER_ROOM &&
+                   (int)LM_CLASS_LUT_CODES == (int)LM_K_CODES,
+               "the kernel's lines are as long");
+
+/* Sixteenths of a cell that a structure is displaced: 16 (dm / 10) lean / cell. Up to 2^16 * 2^17 +
+ * 2^32. */
+static uint32_t sixteenths_of_dm(const struct lm_layover_view *view, uint32_t height_dm)
 {
-    const int64_t above_m_q14 = top_m_q14 - lm_m_q14_of_m_q10(l->reference_m_q10);
-    const int64_t nearer_m_q8 = above_m_q14 * l->lean_q16 >> 22;
-    return lm_cells_q8_of_cells((int32_t)i) - lm_cells_q8_of_m_q8(nearer_m_q8, l->cell_m_q8);
+    const uint64_t per_cell = (uint64_t)160 * view->cell_m_q8;
+    const uint64_t nearest = ((uint64_t)height_dm * view->lean_q16 + per_cell / 2) / per_cell;
+    return nearest < INT16_MAX ? (uint32_t)nearest : INT16_MAX;
 }
 
-/* Add power to a cell. A sum beyond 64 bits saturates, and power outside the line is lost. */
-static void add(const struct lm_layover *l, uint64_t *power_q32, int64_t cell, uint64_t share_q32)
+void lm_layover_set(struct lm_layover *l, const struct lm_classes *classes,
+                    const struct lm_layover_view *view)
 {
-    if (cell >= (int64_t)l->first && cell < (int64_t)l->cells) {
-        const uint64_t sum_q32 = power_q32[cell] + share_q32;
-        power_q32[cell] = sum_q32 < share_q32 ? UINT64_MAX : sum_q32;
+    /* 16 lean / cell, for metres in Q14, in Q31: below 2^17 * 2^13, and to the nearest. */
+    const uint32_t sixteenths_q31 =
+        ((view->lean_q16 << 13) + view->cell_m_q8 / 2) / view->cell_m_q8;
+    *l = (struct lm_layover){.first = view->first,
+                             .cells = view->cells,
+                             .reference_m_q14 = (int32_t)lm_m_q14_of_m_q10(view->reference_m_q10),
+                             .sixteenths_q31 = (int32_t)sixteenths_q31};
+    for (uint32_t code = 0; code < LM_CLASS_LUT_CODES; code++) {
+        const uint32_t sixteenths = sixteenths_of_dm(view, classes->height_dm[code]);
+        l->height_sixteenths[0][code] = (uint8_t)sixteenths;
+        l->height_sixteenths[1][code] = (uint8_t)(sixteenths >> 8);
     }
 }
 
-void lm_layover_run(const struct lm_layover *l, const struct lm_classes *classes,
-                    const struct lm_scan_line *ground, int32_t *level_db_q8,
-                    uint64_t power_q32[LM_CELLS_ROOM])
+int32_t *lm_layover_run(const struct lm_layover *l, const struct lm_scan_line *ground,
+                        int32_t *level_db_q8, int32_t *laid_db_q8)
 {
-    /* Power in Q32 is split between the two cells around the displaced coordinate, in proportion to
-     * its 8 bits of fraction. The parts sum to the whole exactly: no power is lost inside the
-     * line. */
-    const int32_t unit_q8 = fx_db_q8_u64((uint64_t)1 << 32);
-    for (uint32_t i = l->first; i < l->cells; i++) {
-        power_q32[i] = 0;
+    const struct lm_k_layover line = {.cell = ground->cell,
+                                      .elevation_m_q14 = ground->elevation_m_q14,
+                                      .level_db_q8 = level_db_q8,
+                                      .cells = l->cells,
+                                      .reference_m_q14 = l->reference_m_q14,
+                                      .sixteenths_q31 = l->sixteenths_q31,
+                                      .height_sixteenths = l->height_sixteenths};
+    int32_t *const shown_db_q8 = laid_db_q8 + LM_K_LAYOVER_MARGIN;
+    for (uint32_t i = line.cells; i % 16 != 0; i++) {
+        level_db_q8[i] = LM_LEVEL_SHADOW;
     }
-    for (uint32_t i = l->first; i < l->cells; i++) {
-        if (level_db_q8[i] <= LM_LEVEL_SHADOW / 2) {
-            continue;
-        }
-        const int32_t height_m_q14 = lm_m_q14_of_dm(classes->height_dm[ground->cell[i] & 15]);
-        const int64_t at_cells_q8 =
-            appears_at_cells_q8(l, i, ground->elevation_m_q14[i] + height_m_q14);
-        const uint64_t whole_q32 = fx_power_q32_vec(level_db_q8[i]);
-        const uint64_t far_q32 = (whole_q32 >> 8) * (uint64_t)(at_cells_q8 & 255);
-        add(l, power_q32, at_cells_q8 >> 8, whole_q32 - far_q32);
-        add(l, power_q32, (at_cells_q8 >> 8) + 1, far_q32);
+    lm_k_layover(&line, laid_db_q8);
+    for (uint32_t i = 0; i < l->first; i++) {
+        shown_db_q8[i] = LM_LEVEL_SHADOW;
     }
-    for (uint32_t i = l->first; i < l->cells; i++) {
-        level_db_q8[i] = power_q32[i] == 0 ? LM_LEVEL_SHADOW : fx_db_q8_u64(power_q32[i]) - unit_q8;
-    }
+    return shown_db_q8;
 }

@@ -52,20 +52,20 @@ static uint32_t press_beam(struct lm_page *p, int32_t step)
     return LM_EFFECT_BEAM;
 }
 
-static bool is_slant(const struct lm_page *p)
+static bool is_plan(const struct lm_page *p)
 {
-    return p->is_slant;
+    return p->is_plan;
 }
 
-static void label_slant(const struct lm_page *p, struct lm_label *label)
+static void label_plan(const struct lm_page *p, struct lm_label *label)
 {
-    lm_label_set(label, "SAR", p->is_slant ? "SLNT" : "PLAN");
+    lm_label_set(label, "SAR", p->is_plan ? "PLAN" : "SLNT");
 }
 
-static uint32_t press_slant(struct lm_page *p, int32_t step)
+static uint32_t press_plan(struct lm_page *p, int32_t step)
 {
     (void)step;
-    p->is_slant = !p->is_slant;
+    p->is_plan = !p->is_plan;
     return p->picture == LM_PICTURE_PATCH ? LM_EFFECT_PATCH : 0;
 }
 
@@ -138,7 +138,7 @@ static uint32_t press_night(struct lm_page *p, int32_t step)
 static uint32_t press_reset(struct lm_page *p, int32_t step)
 {
     (void)step;
-    p->is_tilt_manual = p->is_pencil = p->is_slant = false;
+    p->is_tilt_manual = p->is_pencil = p->is_plan = false;
     p->black_db = p->white_db = p->gamma_tenths = 0;
     p->gain_db = 0;
     memset(&p->palette, 0, sizeof p->palette);
@@ -169,7 +169,7 @@ static const struct lm_page_key keys[] = {
     {.osb = 9, .text = label_night, .is_on = is_night, .press = press_night},
     {.osb = 10, .words = "RESET", .press = press_reset},
     {.osb = LM_OSB_DECLUTTER, .words = "DCLT", .press = press_declutter},
-    {.osb = 16, .text = label_slant, .is_on = is_slant, .press = press_slant},
+    {.osb = 16, .text = label_plan, .is_on = is_plan, .press = press_plan},
     {DOWN(17, step_white)},
     {UP(18, step_white), .value = label_white},
     {DOWN(19, step_gamma)},

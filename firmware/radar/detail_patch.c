@@ -178,7 +178,8 @@ static struct lm_detail_shape shape_of(const struct lm_detail_item *item, const 
     const fx_bam_t ray = g->look + fx_atan2(place->right_m_q8, (int32_t)range_m_q8);
     struct lm_detail_shape shape = {
         .line_q8 = middle_q8 + (int32_t)lm_cells_q8_of_m_q8(aside_m_q8, g->cell_m_q8),
-        .cell_q8 = (int32_t)(g->cells - g->guard - 1) * 128 + (int32_t)(g->guard * 256) +
+        .cell_q8 = (int32_t)(g->cells - g->guard - 1) * 128 +
+                   (int32_t)((g->overscan + g->guard) * 256) +
                    (int32_t)lm_cells_q8_of_m_q8(place->beyond_m_q8, g->cell_m_q8),
         .class_number = item->class_number,
         .is_line = item->kind == LM_DETAIL_LINE,

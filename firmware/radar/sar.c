@@ -12,7 +12,12 @@
 _Static_assert((int)LM_SAR_GUARD == (int)LM_RADAR_PATCH_GUARD,
                "the table leaves room for the guard cells");
 
-enum { LEFT_OUT_BELOW_FLOOR_Q8 = LM_DB_Q8(10), DWELL_MOST_MS = (1 << 17) - 1 };
+enum {
+    LEFT_OUT_BELOW_FLOOR_Q8 = LM_DB_Q8(10),
+    DWELL_MOST_MS = (1 << 17) - 1,
+    RELIEF_ROWS = 3,  /* in which the relief of a patch is read at either edge */
+    RELIEF_PLACES = 5 /* of such a row */
+};
 
 /* Component of the velocity across the line of sight, to the right. */
 static int32_t speed_across_mm_s(const struct lm_sar_flight *f)
@@ -106,34 +111,112 @@ enum lm_refusal lm_sar_judge(const struct lm_radar *radar, const struct lm_sar_c
         return reason;
     }
     return judge_flight(radar, setup->flight,
-                        dwell_us(radar, command, setup->reference_m_q10, across_mm_s));
+                        dwell_us(radar, command, setup->relief.reference_m_q10, across_mm_s));
+}
+
+/* Elevation of the map at a place of a patch: so far beyond its centre, along the ray that is so
+ * far to the right there, on both sides of it. */
+static int32_t elevation_m_q10(struct lm_tile_cache *tiles, uint8_t lod,
+                               const struct lm_sar_command *c, int32_t beyond_m_q8,
+                               int32_t right_m_q8)
+{
+    struct lm_geo_origin centre;
+    lm_geo_set_origin(&centre, c->centre);
+    const fx_bam_t azimuth = c->look_azimuth + fx_atan2(right_m_q8, beyond_m_q8);
+    const struct lm_position place =
+        lm_geo_direct(&centre, azimuth, fx_hypot_u32(right_m_q8, beyond_m_q8));
+    return lm_scan_elevation(tiles, lod, place, lm_m_q10_of_m_q6(tiles->db->mean_elevation_m_q6));
+}
+
+struct lm_sar_relief lm_sar_relief_of(struct lm_tile_cache *tiles, const struct lm_radar *radar,
+                                      const struct lm_sar_command *c)
+{
+    const uint8_t lod = lm_scan_lod(tiles->db, c->cell_mm);
+    const int32_t half_m_q8 = (int32_t)(radar->sar.cells * lm_m_q8_of_mm_nearest(c->cell_mm) / 2);
+    struct lm_sar_relief relief = {.reference_m_q10 = elevation_m_q10(tiles, lod, c, 0, 0)};
+    for (int32_t n = 0; n < RELIEF_ROWS * RELIEF_PLACES && !c->is_plan; n++) {
+        const int32_t right_m_q8 =
+            half_m_q8 / (RELIEF_PLACES / 2) * (n % RELIEF_PLACES - RELIEF_PLACES / 2);
+        /* At the edge, and 1/8 and 1/4 of a half behind it. */
+        const int32_t beyond_m_q8 = half_m_q8 + half_m_q8 / 8 * (n / RELIEF_PLACES);
+        const int32_t rise_m_q10 =
+            elevation_m_q10(tiles, lod, c, beyond_m_q8, right_m_q8) - relief.reference_m_q10;
+        const int32_t fall_m_q10 =
+            relief.reference_m_q10 - elevation_m_q10(tiles, lod, c, -beyond_m_q8, right_m_q8);
+        relief.far_rise_m_q10 =
+            fx_max_u32(relief.far_rise_m_q10, (uint32_t)fx_max_i32(rise_m_q10, 0));
+        relief.near_fall_m_q10 =
+            fx_max_u32(relief.near_fall_m_q10, (uint32_t)fx_max_i32(fall_m_q10, 0));
+    }
+    return relief;
+}
+
+/* Grazing of flat ground at the centre, tan psi = (H - z0) / S - S / 2a, 0 where layover is not
+ * wanted. No ground is seen more steeply than 63 degrees, tangent 2. */
+static uint32_t lean_q16(const struct lm_sar_command *c, int32_t reference_m_q10)
+{
+    const uint32_t range_m_q8 = lm_m_q8_of_m(c->range_m);
+    const int64_t above_m_q10 = (int64_t)lm_m_q10_of_m_q6(c->height_m_q6) - reference_m_q10;
+    /* The height is below 2^26 in Q10, times 2^14, over a range in Q8. */
+    const int64_t grazing_q16 =
+        above_m_q10 * (1 << 14) / range_m_q8 - ((int64_t)range_m_q8 * LM_CURVATURE_Q48 >> 40);
+    return c->is_plan ? 0 : (uint32_t)fx_clamp_i64(grazing_q16, 0, (1 << 17) - 1);
+}
+
+/* Cells that ground so high is displaced by, and two more for what is between the places that the
+ * relief was read at. Heights are below 2^25. */
+static uint32_t overscan_cells(const struct lm_sar *s, uint32_t height_m_q10, uint32_t most)
+{
+    const uint64_t cells =
+        ((uint64_t)height_m_q10 * s->lean_q16 >> 18) / lm_m_q8_of_mm_nearest(s->command.cell_mm);
+    return cells == 0 ? 0 : (uint32_t)fx_clamp_i64((int64_t)cells + 2, 0, most);
+}
+
+/* Set how many cells are traced on both sides of the patch, because layover brings them in. */
+static void set_overscan(struct lm_sar *s, const struct lm_sar_relief *relief)
+{
+    const uint32_t room = (uint32_t)(LM_CELLS_MAX - LM_SAR_GUARD - s->radar->sar.cells) / 2;
+    const uint32_t most = fx_min_u32(LM_SAR_OVERSCAN_MAX, room);
+    const int64_t near_m_q8 = guard_m_q8(s->radar, &s->command) - LM_M_Q8(16 * LM_RANGE_MIN_M);
+    const uint64_t behind_us = (uint64_t)near_m_q8 / lm_m_q8_of_mm_nearest(s->command.cell_mm);
+    s->lean_q16 = lean_q16(&s->command, relief->reference_m_q10);
+    const uint32_t before = overscan_cells(s, relief->near_fall_m_q10, most);
+    s->overscan = before < behind_us ? before : (uint32_t)behind_us;
+    s->traced = s->overscan + LM_SAR_GUARD + s->radar->sar.cells +
+                overscan_cells(s, relief->far_rise_m_q10, most);
+}
+
+/* Ground range where the first traced cell begins. */
+static uint32_t traced_from_m_q8(const struct lm_sar *s)
+{
+    return (uint32_t)guard_m_q8(s->radar, &s->command) -
+           s->overscan * lm_m_q8_of_mm_nearest(s->command.cell_mm);
 }
 
 static void set_grid(struct lm_sar *s, const struct lm_db *db, int32_t reference_m_q10)
 {
     const struct lm_sar_command *c = &s->command;
-    const uint32_t cells = s->radar->sar.cells, cell_m_q8 = lm_m_q8_of_mm_nearest(c->cell_mm);
-    const uint32_t near_m_q8 = (uint32_t)guard_m_q8(s->radar, c);
-    const int32_t half_m_q8 = (int32_t)(cells * cell_m_q8 / 2);
-    const struct lm_ground_extent extent = {.near_m_q8 =
-                                                -half_m_q8 - LM_SAR_GUARD * (int32_t)cell_m_q8,
-                                            .far_m_q8 = half_m_q8,
+    const uint32_t cell_m_q8 = lm_m_q8_of_mm_nearest(c->cell_mm), near_m_q8 = traced_from_m_q8(s);
+    const int32_t before =
+        (int32_t)(s->radar->sar.cells * cell_m_q8 / 2 + (LM_SAR_GUARD + s->overscan) * cell_m_q8);
+    const struct lm_ground_extent extent = {.near_m_q8 = -before,
+                                            .far_m_q8 = (int32_t)(s->traced * cell_m_q8) - before,
                                             .side_m_q8 = (int32_t)(s->lines * cell_m_q8 / 2),
                                             .apex_m_q8 = lm_m_q8_of_m(c->range_m)};
     lm_ground_patch_set(&s->ground, c->centre, c->look_azimuth, &extent);
     s->lod = lm_scan_lod(db, c->cell_mm);
     lm_scan_blend_set(&s->blend, db, c->cell_mm);
     lm_range_grid_set(&s->grid, &s->radar->illumination, near_m_q8 + cell_m_q8 / 2, cell_m_q8,
-                      cells + LM_SAR_GUARD, lm_m_q10_of_m_q6(c->height_m_q6), reference_m_q10);
+                      s->traced, lm_m_q10_of_m_q6(c->height_m_q6), reference_m_q10);
     lm_sea_set_cells(&s->sea, &s->grid, near_m_q8 + cell_m_q8 / 2);
 }
 
-/* Set the foreground: the terrain before the first guard cell. */
+/* Set the foreground: the terrain before the first traced cell. */
 static void set_foreground(struct lm_sar *s, const struct lm_db *db)
 {
     const struct lm_sar_command *c = &s->command;
     struct lm_foreground *f = &s->foreground;
-    lm_foreground_set(f, db, &s->radar->illumination, (uint32_t)guard_m_q8(s->radar, c), &s->grid);
+    lm_foreground_set(f, db, &s->radar->illumination, traced_from_m_q8(s), &s->grid);
     const int32_t near_m_q8 = (int32_t)f->start_m_q8 - (int32_t)lm_m_q8_of_m(c->range_m);
     const struct lm_ground_extent extent = {
         .near_m_q8 = near_m_q8,
@@ -143,22 +226,14 @@ static void set_foreground(struct lm_sar *s, const struct lm_db *db)
     lm_ground_patch_set(&s->foreground_ground, c->centre, c->look_azimuth, &extent);
 }
 
-/* Set the layover by the grazing of flat ground at the centre: tan psi = (H - z0) / S - S / 2a. */
-static void set_layover(struct lm_sar *s)
+static void set_layover(struct lm_sar *s, const struct lm_classes *classes)
 {
-    const uint32_t range_m_q8 = lm_m_q8_of_m(s->command.range_m);
-    const int64_t above_m_q10 = (int64_t)s->grid.height_m_q10 - s->grid.reference_m_q10;
-    /* The height is below 2^26 in Q10, times 2^14, over a range in Q8; at 1 km the tangent is below
-     * 2^22. */
-    const int64_t grazing_q16 =
-        above_m_q10 * (1 << 14) / range_m_q8 - ((int64_t)range_m_q8 * LM_CURVATURE_Q48 >> 40);
-    s->layover = (struct lm_layover){
-        .reference_m_q10 = s->grid.reference_m_q10,
-        .lean_q16 = s->command.has_layover && grazing_q16 > 0 ? (int32_t)grazing_q16 : 0,
-        .cell_m_q8 = s->grid.cell_m_q8,
-        .first = s->grid.first,
-        .cells = s->grid.cells,
-    };
+    const struct lm_layover_view view = {.reference_m_q10 = s->grid.reference_m_q10,
+                                         .lean_q16 = s->lean_q16,
+                                         .cell_m_q8 = s->grid.cell_m_q8,
+                                         .first = s->grid.first,
+                                         .cells = s->grid.cells};
+    lm_layover_set(&s->layover, classes, &view);
 }
 
 static void set_geometry(struct lm_sar *s)
@@ -169,13 +244,14 @@ static void set_geometry(struct lm_sar *s)
         .centre_m_q8 = lm_m_q8_of_m(s->command.range_m),
         .cell_m_q8 = s->grid.cell_m_q8,
         .lines = s->lines,
-        .cells = s->grid.cells,
+        .cells = s->radar->sar.cells + LM_SAR_GUARD,
         .guard = LM_SAR_GUARD,
-        .first = fx_max_u32(s->grid.first, LM_SAR_GUARD),
+        .overscan = s->overscan,
+        .first = fx_max_u32(s->grid.first, LM_SAR_GUARD + s->overscan) - s->overscan,
         .heights = {s->grid.height_m_q10, s->grid.reference_m_q10},
         .wavelength_um = s->radar->wavelength_um,
         .across_mm_s = s->across_mm_s,
-        .lean_q16 = s->layover.lean_q16,
+        .lean_q16 = (int32_t)s->lean_q16,
         .dwell_ms = s->dwell_ms,
         .epoch = s->epoch,
     };
@@ -233,7 +309,7 @@ int lm_sar_start(struct lm_sar *s, const struct lm_radar *radar, const struct lm
     }
     const int32_t across_mm_s = across_mm_s_of(radar, flight);
     const uint64_t patch_us =
-        dwell_us(radar, command, setup->reference_m_q10, fx_abs_u32(across_mm_s));
+        dwell_us(radar, command, setup->relief.reference_m_q10, fx_abs_u32(across_mm_s));
     s->radar = radar;
     s->command = *command;
     s->lines = (uint32_t)lines_needed(radar, command);
@@ -259,17 +335,19 @@ int lm_sar_start(struct lm_sar *s, const struct lm_radar *radar, const struct lm
     set_sea(s, &db->classes, setup);
     const uint64_t patch_ms = lm_ms_of_us(patch_us);
     s->dwell_ms = (uint32_t)(patch_ms < DWELL_MOST_MS ? patch_ms : DWELL_MOST_MS);
-    lm_sar_set_reference(s, db, setup->reference_m_q10);
+    lm_sar_set_relief(s, db, &setup->relief);
     const bool is_finer = s->lod == 0 && command->cell_mm < lm_db_cell_mm(db, 0);
     s->detail_state = is_finer && db->detail_size != 0 ? LM_SAR_DETAIL_WANTED : LM_SAR_DETAIL_NONE;
     return LM_OK;
 }
 
-void lm_sar_set_reference(struct lm_sar *s, const struct lm_db *db, int32_t reference_m_q10)
+void lm_sar_set_relief(struct lm_sar *s, const struct lm_db *db, const struct lm_sar_relief *relief)
 {
-    set_grid(s, db, reference_m_q10);
+    s->relief = *relief;
+    set_overscan(s, relief);
+    set_grid(s, db, relief->reference_m_q10);
     set_foreground(s, db);
-    set_layover(s);
+    set_layover(s, &db->classes);
     set_geometry(s);
     lm_patch_rain_set(&s->rain, s->radar, &s->geometry, s->floor_db_q8);
     lm_sar_restart(s);
@@ -477,9 +555,9 @@ void lm_sar_sample_line(struct lm_sar *s, struct lm_tile_cache *tiles, uint32_t 
 {
     int32_t *clutter_db_q8 = line->lit.level_db_q8;
     trace_line(s, tiles, number, line);
-    if (s->command.has_layover) {
-        lm_layover_run(&s->layover, &tiles->db->classes, &line->ground, clutter_db_q8,
-                       s->power_q32);
+    if (s->lean_q16 != 0) {
+        clutter_db_q8 =
+            lm_layover_run(&s->layover, &line->ground, clutter_db_q8, s->laid_db_q8) + s->overscan;
     }
     if (s->chips && s->target_patch.on_line[number] != 0) {
         lm_target_patch_shade(&s->target_patch, number, &s->geometry, clutter_db_q8);
@@ -493,6 +571,14 @@ void lm_sar_sample_line(struct lm_sar *s, struct lm_tile_cache *tiles, uint32_t 
 static bool is_early(const struct lm_sar *s, const struct lm_patch_scatterer *p)
 {
     return (p->is_displaced || p->is_chip) && p->line >= 0 && p->line < (int32_t)s->lines;
+}
+
+/* Mark the scatterers of a traced line that its horizon hides. They count cells from the first
+ * guard cell. */
+static void mark_hidden(struct lm_sar *s, uint32_t number, const struct lm_line *line)
+{
+    lm_target_patch_mark_hidden(&s->target_patch, number, line->lit.horizon + s->overscan,
+                                s->grid.tangent_bits, s->traced - s->overscan);
 }
 
 /* Test which chips and displaced movers are hidden before the first line is sampled: they are
@@ -509,8 +595,7 @@ static bool find_hidden(struct lm_sar *s, struct lm_tile_cache *tiles, uint32_t 
         if (is_early(s, p) && !is_judged) {
             const uint32_t number = (uint32_t)p->line;
             trace_line(s, tiles, number, line);
-            lm_target_patch_mark_hidden(&s->target_patch, number, line->lit.horizon,
-                                        s->grid.tangent_bits, s->grid.cells);
+            mark_hidden(s, number, line);
             traced++;
         }
     }
@@ -534,8 +619,7 @@ static void sample_lines(struct lm_sar *s, struct lm_tile_cache *tiles, uint32_t
         lm_side_lobes_find(&s->side_lobes, s->sampled, level_db_q8 + LM_SAR_GUARD,
                            s->radar->sar.cells, has_chip ? LM_SIDE_LOBES_NONE : s->shadow_db_q8,
                            s->command.centre.longitude);
-        lm_target_patch_mark_hidden(&s->target_patch, s->sampled, line->lit.horizon,
-                                    s->grid.tangent_bits, s->grid.cells);
+        mark_hidden(s, s->sampled, line);
     }
 }
 

@@ -42,7 +42,7 @@ static void restart_patch(struct lm_unit *u, uint64_t now_us)
 {
     struct lm_sar_command command = u->picture.sar.command;
     command.cell_mm = lm_page_cell_mm(&u->page);
-    command.has_layover = u->page.is_slant;
+    command.is_plan = u->page.is_plan;
     const enum lm_refusal reason = try_patch(u, &command, now_us);
     if (reason != LM_REFUSED_NOT) {
         note_refusal(u, reason);
@@ -100,7 +100,7 @@ static enum lm_refusal designate(struct lm_unit *u, uint64_t now_us)
     const struct lm_sar_command command = {.centre = u->cursor.position,
                                            .cell_mm = lm_page_cell_mm(&u->page),
                                            .is_from_ownship = true,
-                                           .has_layover = u->page.is_slant};
+                                           .is_plan = u->page.is_plan};
     if (!u->cursor.is_placed || u->page.is_override) {
         return show_unable(u, u->cursor.is_placed ? LM_REFUSED_SILENT : LM_REFUSED_CURSOR, now_us);
     }

@@ -57,14 +57,10 @@ static bool resolve_command(const struct lm_picture *p, struct lm_sar_command *c
     return true;
 }
 
-/* Elevation of the map at the patch's centre, from the tiles at hand; requests the finest tile that
- * the patch uses. */
-static int32_t elevation_q10(const struct lm_picture *p, const struct lm_sar_command *command)
+static struct lm_sar_relief relief_of(const struct lm_picture *p,
+                                      const struct lm_sar_command *command)
 {
-    struct lm_unit_map *map = p->lent.map;
-    const uint8_t lod = lm_scan_lod(&map->db, command->cell_mm);
-    return lm_scan_elevation(&map->tiles, lod, command->centre,
-                             lm_m_q10_of_m_q6(map->db.mean_elevation_m_q6));
+    return lm_sar_relief_of(&p->lent.map->tiles, p->lent.radar, command);
 }
 
 static enum lm_refusal start(struct lm_picture *p, const struct lm_sar_command *patch,
@@ -83,7 +79,7 @@ static enum lm_refusal start(struct lm_picture *p, const struct lm_sar_command *
     const struct lm_sar_setup scene = {.flight = is_in_flight ? &flight : NULL,
                                        .targets = &map->target_set,
                                        .chips = &map->chips,
-                                       .reference_m_q10 = elevation_q10(p, &command),
+                                       .relief = relief_of(p, &command),
                                        .epoch = p->lent.noise_seed,
                                        .sea_state = p->lent.environment->sea_state,
                                        .environment = p->lent.environment,
@@ -125,17 +121,23 @@ static void prefetch(struct lm_picture *p)
     p->acquire.lines_asked_for = line;
 }
 
-/* Look up the patch's elevation again when its tiles have been read, as that of the start may be
- * from a coarser tile. True if it changed: then the targets' tiles are requested once more. */
-static bool refresh_reference(struct lm_picture *p)
+/* Read the patch's relief again when its tiles have been read, as that of the start may be from
+ * coarser tiles. True if it changed: then its tiles and the targets' are requested once more. */
+static bool refresh_relief(struct lm_picture *p)
 {
-    const int32_t reference_m_q10 = elevation_q10(p, &p->sar.command);
-    if (reference_m_q10 == p->sar.grid.reference_m_q10) {
+    const struct lm_sar_relief relief = relief_of(p, &p->sar.command), *const was = &p->sar.relief;
+    if (relief.reference_m_q10 == was->reference_m_q10 &&
+        relief.near_fall_m_q10 == was->near_fall_m_q10 &&
+        relief.far_rise_m_q10 == was->far_rise_m_q10) {
         return false;
     }
-    lm_sar_set_reference(&p->sar, &p->lent.map->db, reference_m_q10);
+    const uint32_t overscan = p->sar.overscan, traced = p->sar.traced;
+    lm_sar_set_relief(&p->sar, &p->lent.map->db, &relief);
     lm_sar_prefetch_targets(&p->sar, &p->lent.map->tiles);
     p->acquire.has_tiles = false;
+    if (p->sar.overscan != overscan || p->sar.traced != traced) {
+        p->acquire.lines_asked_for = 0;
+    }
     return true;
 }
 
@@ -147,9 +149,10 @@ static bool is_ready(struct lm_picture *p, uint64_t now_us)
         p->acquire.has_tiles |= p->acquire.lines_asked_for == lines_of(p) &&
                                 lm_tile_cache_is_idle(&map->tiles) &&
                                 lm_chips_are_settled(&map->chips);
-        const bool is_over =
-            (p->acquire.has_tiles || is_late) && lm_sar_load_detail(&p->sar, &map->tiles, is_late);
-        p->acquire.is_reading = !is_over || refresh_reference(p);
+        /* Detail is placed in cells that count from the first one of the relief's overscan. */
+        const bool has_relief = p->sar.detail_state == LM_SAR_DETAIL_LOADING ||
+                                ((p->acquire.has_tiles || is_late) && !refresh_relief(p));
+        p->acquire.is_reading = !has_relief || !lm_sar_load_detail(&p->sar, &map->tiles, is_late);
         p->next_line_us = now_us + p->sar.line_us; /* the dwell begins */
     }
     return !p->acquire.is_reading && p->sar.line < lines_of(p);

@@ -35,13 +35,13 @@ void ref_mocomp(const double *const power[], size_t lines, size_t line, double w
     }
 }
 
-void ref_layover(const double *power, const double *top_m, size_t count, double shift, double *laid)
+void ref_layover(const double *power, const double *nearer_cells, size_t count, double *laid)
 {
     for (size_t i = 0; i < count; i++) {
         laid[i] = 0;
     }
     for (size_t i = 0; i < count; i++) {
-        const double place = (double)i - top_m[i] * shift, below = floor(place);
+        const double place = (double)i - nearer_cells[i], below = floor(place);
         if (below >= 0 && below < (double)count) {
             laid[(size_t)below] += power[i] * (1 - (place - below));
         }

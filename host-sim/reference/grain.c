@@ -108,13 +108,35 @@ double ref_leak(struct ref_leak *leak, const struct ref_params *params, unsigned
     return leak->mean * pow(10, params->leak_db / 10);
 }
 
+/* Powers of the ground where they are displayed. Terrain and height are each rounded to sixteenths
+ * of a cell. */
+static void lay_over(struct ref_bin *bins, size_t count, const struct ref_lean *lean)
+{
+    double power[REF_LINE_MAX] = {0}, nearer_cells[REF_LINE_MAX] = {0}, laid[REF_LINE_MAX];
+    for (size_t i = 0; i < count; i++) {
+        const double above_m = bins[i].elevation_m - lean->reference_m;
+        power[i] = bins[i].ground;
+        nearer_cells[i] =
+            (round(16 * above_m * lean->cells_m) + round(16 * bins[i].height_m * lean->cells_m)) /
+            16;
+    }
+    ref_layover(power, nearer_cells, count, laid);
+    for (size_t i = 0; i < count; i++) {
+        bins[i].ground = laid[i];
+    }
+}
+
 void ref_patch_echo(struct ref_bin *bins, size_t count, size_t guard,
                     const double table_db[REF_GRAIN_VALUES], const struct ref_params *params,
                     struct ref_leak *leak, unsigned line)
 {
     for (size_t i = 0; i < count; i++) {
-        const double level_db = bins[i].level_db + bins[i].class_gain_db - bins[i].loss_db;
+        const double level_db = bins[i].level_db + bins[i].class_gain_db;
         bins[i].ground = bins[i].is_lit ? pow(10, level_db / 10) : 0;
+    }
+    lay_over(bins, count, &params->lean);
+    for (size_t i = 0; i < count; i++) {
+        bins[i].ground *= pow(10, -bins[i].loss_db / 10);
     }
     const double left = ref_leak(leak, params, line, bins + guard, count - guard);
     const double floor = pow(10, params->noise_floor_db / 10) + left;

@@ -263,6 +263,14 @@ static int make_levels(const struct ref_picture *picture, const struct ref_sar *
     return status;
 }
 
+struct ref_lean ref_sar_lean(const struct ref_sar *sar, double reference_m)
+{
+    const double above_m = sar->antenna_m - reference_m;
+    const double grazing =
+        fmax(above_m / sar->range_m - sar->range_m / (2 * REF_EFFECTIVE_EARTH_M), 0);
+    return (struct ref_lean){sar->is_plan ? 0 : grazing / sar->cell_m, reference_m};
+}
+
 int ref_sar_patch(struct ref_picture *picture, const struct ref_db *db, const struct ref_sar *sar,
                   const struct ref_params *params)
 {
@@ -277,12 +285,14 @@ int ref_sar_patch(struct ref_picture *picture, const struct ref_db *db, const st
     ref_db_elevation(db, picture->level, sar->centre, params->has_exact_weights,
                      &picture->view.reference_m);
     const struct ref_surface surface = ref_sar_surface(sar);
+    struct ref_params laid = *params;
+    laid.lean = ref_sar_lean(sar, picture->view.reference_m);
     for (unsigned line = 0; line < picture->line_count; line++) {
         picture->start_horizons[line] = ref_sar_horizon(db, sar, params, line);
         sar_line(picture, db, sar, params, &surface, line);
     }
     rain_on(picture, sar);
-    if (make_levels(picture, sar, params) != 0) {
+    if (make_levels(picture, sar, &laid) != 0) {
         ref_picture_free(picture);
         return -1;
     }

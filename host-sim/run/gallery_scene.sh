@@ -99,7 +99,7 @@ EOF
 8.4  picture effect-sea-state-6
 EOF
     show "$database" seas "$out/straight.log"
-    printf '1 sar %s\n6 picture effect-no-layover\n6 sar %s layover\n11 picture effect-layover\n' "$patch" "$patch" \
+    printf '1 sar %s plan\n6 picture effect-plan\n6 sar %s\n11 picture effect-layover\n' "$patch" "$patch" \
         > "$out/layover.script"
     show "$database" layover "$out/straight.log"
     printf '1 sar %s\n8 picture effect-patch\n' "$patch" > "$out/patch.script"

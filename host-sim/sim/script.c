@@ -43,13 +43,13 @@ static bool choice(const char *word, const char *const *names, int count, int32_
 /* Words behind a patch: its effects. */
 static bool parse_effects(char **words, int count, struct lm_sar_command *sar)
 {
-    static const char *const names[] = {"layover", "steady"};
+    static const char *const names[] = {"plan", "steady"};
     for (int i = 0; i < count; i++) {
         int32_t index;
         if (!choice(words[i], names, 2, &index)) {
             return false;
         }
-        *(index == 0 ? &sar->has_layover : &sar->is_steady) = true;
+        *(index == 0 ? &sar->is_plan : &sar->is_steady) = true;
     }
     return true;
 }

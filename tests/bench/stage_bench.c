@@ -124,7 +124,7 @@ static int draw_patches(struct world *w, const struct lm_target_set *targets, ui
     struct lm_sar sar;
     const struct lm_sar_setup scene = {.targets = targets,
                                        .chips = &w->chips,
-                                       .reference_m_q10 = 60 * 1024,
+                                       .relief = {.reference_m_q10 = 60 * 1024},
                                        .sea_state = LM_SEA_STATE_OF_IMAGE};
     const struct lm_sar_command command = {
         .centre = {w->db.centre_latitude, w->db.centre_longitude},

@@ -38,7 +38,7 @@ struct golden_picture {
     /* SAR when cell_mm is not 0: a patch at the middle, seen from the aircraft, or when range_m is
      * not 0 from so far in the direction of the heading. */
     uint32_t cell_mm, range_m;
-    bool has_layover;
+    bool is_plan;
 };
 
 extern const struct golden_picture golden_pictures[];

@@ -4,7 +4,7 @@
  *   realism_tap font        print the firmware's font, a row of dots a line
  *   realism_tap IMAGE DIR   draw what standard input asks for, a picture a line:
  *
- *     sar NAME KEY=VALUE...      lat lon cell_mm look range_m height_m layover epoch
+ *     sar NAME KEY=VALUE...      lat lon cell_mm look range_m height_m plan epoch
  *     sector NAME KEY=VALUE...   lat lon height_m heading track speed_m_s mode fov nm
  *                                clat clon sweeps epoch sea wind tilt
  *                                mover_m mover_az mover_mps mover_dbsm
@@ -103,9 +103,9 @@ static void keep_ground(const struct tap *t, uint32_t number)
 {
     const struct lm_scan_line *ground = &t->line.ground;
     for (uint32_t i = 0; i < CELLS; i++) {
-        const uint32_t cell = ground->cell[i + LM_SAR_GUARD];
+        const uint32_t cell = ground->cell[i + LM_SAR_GUARD + t->sar.overscan];
         patch[CELL][number][i] = (int32_t)cell;
-        patch[ELEVATION][number][i] = ground->elevation_m_q14[i + LM_SAR_GUARD];
+        patch[ELEVATION][number][i] = ground->elevation_m_q14[i + LM_SAR_GUARD + t->sar.overscan];
         patch[HEIGHT_DM][number][i] = t->map.db.classes.height_dm[cell & 15];
     }
 }
@@ -121,14 +121,12 @@ static void prefetch_patch(struct tap *t)
     read_tiles(t);
 }
 
-/* Elevation of the centre from tiles that are resident, as the unit takes it. */
-static int32_t reference_of(struct tap *t, const struct lm_sar_command *command)
+/* Relief of a patch from tiles that are resident, as the unit takes it. */
+static struct lm_sar_relief relief_of(struct tap *t, const struct lm_sar_command *command)
 {
-    const int32_t mean_m_q10 = lm_m_q10_of_m_q6(t->map.db.mean_elevation_m_q6);
-    const uint8_t lod = lm_scan_lod(&t->map.db, command->cell_mm);
-    lm_scan_elevation(&t->map.tiles, lod, command->centre, mean_m_q10);
+    (void)lm_sar_relief_of(&t->map.tiles, &lm_radar_default, command);
     read_tiles(t);
-    return lm_scan_elevation(&t->map.tiles, lod, command->centre, mean_m_q10);
+    return lm_sar_relief_of(&t->map.tiles, &lm_radar_default, command);
 }
 
 static int start_patch(struct tap *t, const struct lm_environment *environment)
@@ -139,11 +137,11 @@ static int start_patch(struct tap *t, const struct lm_environment *environment)
         .look_azimuth = angle_of(t, "look"),
         .range_m = (uint32_t)number_of(t, "range_m", 20000),
         .height_m_q6 = (int32_t)(number_of(t, "height_m", 3000) * 64),
-        .has_layover = number_of(t, "layover", 0) != 0,
+        .is_plan = number_of(t, "plan", 0) != 0,
     };
     const struct lm_sar_setup setup = {.targets = &t->map.target_set,
                                        .chips = &t->map.chips,
-                                       .reference_m_q10 = reference_of(t, &command),
+                                       .relief = relief_of(t, &command),
                                        .epoch = (uint32_t)number_of(t, "epoch", 0),
                                        .sea_state = environment->sea_state,
                                        .environment = environment};

@@ -26,7 +26,7 @@ struct request {
     const char *image, *out, *dump;
     bool has_exact_weights;
     double latitude_deg, longitude_deg, antenna_m, azimuth_deg, range_m, cell_m, cells;
-    double half_angle_deg, lines, size_px, scale, epoch, looks;
+    double half_angle_deg, lines, size_px, scale, epoch, looks, plan;
     double beam_deg, tilt_deg, pulse_us, noise_db, code_gain_db, air_db_km, noise_looks, stc_m;
     double sharpening, beam_step_deg, rate_deg_s, speed_m_s, track_deg;
     double rain_mm_h, rain_radius_m, rain_distance_m, rain_bearing_deg;
@@ -88,6 +88,7 @@ static const struct number numbers[] = {
     {"speed", "metres a second, for sharpening", AT(speed_m_s), FOR_SECTOR, 1, 2000, 250, false},
     {"track", "degrees from north of the velocity, for sharpening", AT(track_deg), FOR_SECTOR, -720,
      720, 0, false},
+    {"plan", "1: a plan, without layover", AT(plan), FOR_SAR, 0, 1, 0, true},
     {"rain", "millimetres an hour in a circle; 0: no rain", AT(rain_mm_h), FOR_SAR | FOR_SECTOR, 0,
      150, 0, false},
     {"rain-radius", "metres of the circle", AT(rain_radius_m), FOR_SAR | FOR_SECTOR, 100, 100000,
@@ -273,6 +274,7 @@ static int render_sar(const struct request *request, const struct ref_db *db)
                           .antenna_m = request->antenna_m,
                           .cell_m = request->cell_m,
                           .cell_count = (unsigned)request->cells,
+                          .is_plan = request->plan != 0,
                           .grain_row = start.row,
                           .grain_column = start.column,
                           .side_lobe_seed = hs_bam(place_of(request, db).longitude_deg),

@@ -22,7 +22,7 @@
 struct lm_sar_command {
     struct lm_position centre;
     uint32_t cell_mm;      /* side of a cell, within the radar table's limits */
-    bool has_layover;      /* displace high ground and tops of structures (lm/layover.h) */
+    bool is_plan;          /* no layover: high ground and tops are where they are (lm/layover.h) */
     bool is_steady;        /* no defocus from unsteady flight (lm/defocus.h) */
     bool is_from_ownship;  /* true: ignore the three members below */
     fx_bam_t look_azimuth; /* from the antenna to the patch */

@@ -56,7 +56,7 @@ struct lm_page {
     uint8_t azimuth_index;        /* index of the radar table's sectors, 0..LM_AZIMUTHS - 1 */
     uint8_t cell_index;           /* of the patch, 0..LM_SAR_CELLS_OFFERED - 1: lm_page_cell_mm */
     bool is_baro;                 /* the barometric height is used, if there is one */
-    bool is_slant;                /* a patch is shown in slant range, with layover */
+    bool is_plan;                 /* a patch is shown as a plan, without layover */
     bool is_tilt_manual;          /* the operator, not the radar, sets the tilt */
     bool is_pencil;               /* the beam is not spoiled into a fan */
     int16_t tilt_tenths;          /* of the beam's axis, tenths of a degree up */

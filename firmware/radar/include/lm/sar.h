@@ -18,7 +18,8 @@
  *       \                  /     lines run from near to far; line 0 is at the left
  *       |\                /|
  *       +-\--------------/-+
- *          \ guard cells/        LM_SAR_GUARD, traced and not displayed
+ *          \ guard cells/        LM_SAR_GUARD, traced and not displayed; with layover, cells before
+ *           \          /         them and behind the far end, from where power is displaced
  *           \----------/
  *            \ fore-  /          from 1/16 of the way on: casts shadows into the patch;
  *             \ground/           traced along every LM_SAR_FOREGROUND_LINES-th line
@@ -48,7 +49,9 @@
 #include "lm/tone.h"
 
 enum {
-    LM_SAR_GUARD = 4,             /* cells before the patch, traced and not displayed */
+    LM_SAR_GUARD = 4, /* cells before the patch, traced and not displayed */
+    LM_SAR_OVERSCAN_MAX =
+        48, /* cells that are traced before the guard cells, or behind the patch */
     LM_SAR_FOREGROUND_LINES = 16, /* lines from one traced foreground to the next */
 
     /* Lines sampled ahead of the line that is drawn: a scatterer is spread over the lines before
@@ -71,13 +74,21 @@ struct lm_sar_flight {
     uint32_t lateral_mm_s2; /* lateral acceleration; what motion compensation leaves of it blurs */
 };
 
+/* Relief of a patch: what layover needs to know of the terrain before it is traced. High ground
+ * behind the far edge is displaced into the patch, and low ground before the near edge. */
+struct lm_sar_relief {
+    int32_t reference_m_q10;  /* elevation of the patch's flat ground, z0 */
+    uint32_t near_fall_m_q10; /* how far the ground at the near edge lies below z0 at most */
+    uint32_t far_rise_m_q10;  /* how far that at the far edge lies above z0 at most */
+};
+
 /* Set-up of a patch: its surroundings at its start. */
 struct lm_sar_setup {
     const struct lm_sar_flight *flight;  /* NULL: commanded geometry, no limits; read at once */
     const struct lm_target_set *targets; /* borrowed; NULL: none */
     struct lm_chips *chips;              /* borrowed; NULL: every signature is drawn as a point */
-    int32_t reference_m_q10;             /* elevation of the patch's flat ground */
-    uint32_t epoch;                      /* chooses the random draws: noise, targets */
+    struct lm_sar_relief relief;
+    uint32_t epoch; /* chooses the random draws: noise, targets */
     uint8_t sea_state;
     const struct lm_environment *environment; /* rain, jammers, wind; NULL: none; read at once */
     uint64_t time_us;                         /* movers are where they are at this time */
@@ -118,6 +129,10 @@ struct lm_sar {
     int32_t across_mm_s;           /* velocity to the right of the line of sight */
     int32_t floor_db_q8;           /* noise with that of jammers, dB of gamma */
     struct lm_patch_rain rain;
+    struct lm_sar_relief relief;
+    uint32_t lean_q16; /* displacement by layover over height; 0: there is none */
+    uint32_t overscan; /* cells that are traced before the guard cells */
+    uint32_t traced;   /* cells that are traced in all */
     struct lm_layover layover;
     uint32_t defocus_lines_q8; /* width of the defocus; 256: none */
     struct lm_patch_geometry geometry;
@@ -138,6 +153,7 @@ struct lm_sar {
     struct lm_detail_patch detail; /* drawn once detail_state is LM_SAR_DETAIL_READY */
     int32_t ring_db_q8[LM_SAR_RING][LM_CELLS_ROOM]; /* levels of line n at n % LM_SAR_RING */
     uint64_t power_q32[LM_CELLS_ROOM];              /* work space */
+    int32_t laid_db_q8[LM_LAYOVER_ROOM];            /* work space */
 };
 
 /* Judge whether a patch can be made. Returns LM_REFUSED_NOT, or the first of these that holds:
@@ -161,13 +177,19 @@ enum lm_refusal lm_sar_judge(const struct lm_radar *radar, const struct lm_sar_c
  * A patch of commanded geometry (flight NULL) has none of the last three limits. Its dwell is that
  * of an aircraft that passes at the table's reference speed, with the patch abeam to the right.
  * `radar`, and targets and chips of the set-up, are borrowed as long as *s is used. Cost: a little
- * more than lm_sar_set_reference. */
+ * more than lm_sar_set_relief. */
 int lm_sar_start(struct lm_sar *s, const struct lm_radar *radar, const struct lm_db *db,
                  const struct lm_sar_command *command, const struct lm_sar_setup *setup);
 
-/* Change the patch's reference elevation and restart it. Called when a finer tile arrives after
- * lm_sar_start. Dwell and limits are not recomputed. Cost: about 60 k instructions. */
-void lm_sar_set_reference(struct lm_sar *s, const struct lm_db *db, int32_t reference_m_q10);
+/* Read the relief of a patch, whose command is complete, from the tiles at hand, and request the
+ * finest tiles that it uses. Cost: some 15 k instructions, without layover 500. */
+struct lm_sar_relief lm_sar_relief_of(struct lm_tile_cache *tiles, const struct lm_radar *radar,
+                                      const struct lm_sar_command *command);
+
+/* Change the patch's relief and restart it. Called when a finer tile arrives after lm_sar_start.
+ * Dwell and limits are not recomputed. Cost: about 60 k instructions. */
+void lm_sar_set_relief(struct lm_sar *s, const struct lm_db *db,
+                       const struct lm_sar_relief *relief);
 
 /* Time until the last line is due. */
 uint64_t lm_sar_time_to_go_us(const struct lm_sar *s);
@@ -203,7 +225,7 @@ const int32_t *lm_sar_draw_line(struct lm_sar *s, struct lm_tile_cache *tiles,
 
 /* Sample line `number`: the stages from the map to noise and speckle, without scatterers and
  * without defocus. Part of lm_sar_draw_line; public for tests. Result:
- * - line->ground: the cells of the line;
+ * - line->ground: the cells of the line, from index `overscan` on;
  * - level_db_q8, from index LM_SAR_GUARD on: the levels;
  * - s->horizon: the horizon that the line started with. */
 void lm_sar_sample_line(struct lm_sar *s, struct lm_tile_cache *tiles, uint32_t number,

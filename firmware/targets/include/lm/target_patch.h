@@ -44,8 +44,9 @@ struct lm_patch_geometry {
     fx_bam_t look;        /* azimuth of the line of sight to the centre, from north */
     uint32_t centre_m_q8; /* ground range from the antenna to the centre */
     uint32_t cell_m_q8, lines, cells;
-    uint32_t guard; /* number of the cells that lie before the patch */
-    uint32_t first; /* cells before this one are not displayed */
+    uint32_t guard;    /* number of the cells that lie before the patch */
+    uint32_t overscan; /* cells that are traced before those, and not counted here */
+    uint32_t first;    /* cells before this one are not displayed */
     struct lm_target_heights heights;
     uint32_t wavelength_um;
     int32_t across_mm_s; /* the radar's velocity to the right of the line of sight; 0 displaces

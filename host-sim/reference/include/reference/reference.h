@@ -26,6 +26,7 @@ enum {
     REF_SPECKLE_SLICES = 1024,
     REF_GRAIN_VALUES = 256,
     REF_GUARD_CELLS = 4,
+    REF_LINE_MAX = 4096 + REF_GUARD_CELLS, /* bins of a patch's line */
     REF_COARSE_CELLS = 128
 };
 
@@ -74,6 +75,10 @@ struct ref_params {
     double black_db, white_db; /* white_db > black_db */
     double gamma_exponent;     /* > 0 */
     double sea_db;             /* ref_sea_db of the state of the sea */
+    struct ref_lean {
+        double cells_m;     /* of a patch: cells that a top is nearer for a metre of height */
+        double reference_m; /* where it is not */
+    } lean;
     struct ref_sea {
         double critical; /* critical grazing angle, radians; 0: none */
         bool has_wind;
@@ -538,10 +543,9 @@ double ref_mocomp_cells(double wavelength_m, double residual_m_s2, double dwell_
 void ref_mocomp(const double *const power[], size_t lines, size_t line, double width, double *mean,
                 size_t count);
 
-/* A line in slant-range presentation: each power moves nearer by shift * top_m cells and is shared
- * between the two bins that it falls between; shift = tan(psi) / ds, top_m above the reference. */
-void ref_layover(const double *power, const double *top_m, size_t count, double shift,
-                 double *laid);
+/* A line in slant-range presentation: each power moves nearer by so many cells and is shared
+ * between the two bins that it falls between. */
+void ref_layover(const double *power, const double *nearer_cells, size_t count, double *laid);
 
 struct ref_taylor {
     double side_lobe_db; /* below the peak, > 0 */
@@ -598,6 +602,7 @@ struct ref_sar {
         range_m; /* S, along the ground from antenna to centre; > half the patch and guard cells */
     double antenna_m, cell_m;
     unsigned cell_count;              /* along either side of the square */
+    bool is_plan;                     /* without layover */
     uint32_t grain_row, grain_column; /* of cell 0 of line 0 */
     uint32_t side_lobe_seed;          /* the centre's longitude, BAM */
     struct ref_patch_rain rain;       /* distances, angles and slant are filled from these places */
@@ -606,6 +611,9 @@ struct ref_sar {
 
 /* Number of lines of a patch: n of "Line of a patch". */
 unsigned ref_sar_lines(const struct ref_sar *sar);
+
+/* Layover of a patch: tan(psi) of flat ground at its centre, over the cell. */
+struct ref_lean ref_sar_lean(const struct ref_sar *sar, double reference_m);
 
 /* The tables of a picture. */
 struct ref_tables {
@@ -639,6 +647,7 @@ int ref_picture_allocate(struct ref_picture *picture);
  * afterwards. */
 int ref_gm_sweep(struct ref_picture *picture, const struct ref_db *db, const struct ref_gm *gm,
                  const struct ref_params *params);
+/* Without overscan: what layover takes from the ends of a patch is not replaced. */
 int ref_sar_patch(struct ref_picture *picture, const struct ref_db *db, const struct ref_sar *sar,
                   const struct ref_params *params);
 void ref_picture_free(struct ref_picture *picture);

@@ -6,7 +6,8 @@
  *                                             (these words are the radar table's)
  *   SECONDS sar LAT LON CELL_M [EFFECT..]     a patch seen from the ownship
  *   SECONDS sarfrom LAT LON CELL_M LOOK_DEG RANGE_M HEIGHT_M [EFFECT..]
- *                                             EFFECT: layover; steady, without the blur of turns
+ *                                             EFFECT: plan, without layover; steady, without the
+ *                                             blur of turns
  *   SECONDS weather fair                      no rain, nobody jams
  *   SECONDS rain LAT LON RADIUS_KM MM_PER_H   one more circle of rain
  *   SECONDS jam LAT LON DB                    one more jammer, over the noise at ten nautical miles

@@ -334,22 +334,21 @@ TEST(tilt_by_hand_ends_where_the_antenna_does)
     free_rig(r);
 }
 
-TEST(osb_16_of_the_control_page_shows_patches_in_slant_range)
+TEST(osb_16_of_the_control_page_shows_patches_as_plans)
 {
     struct rig *r = fly_rig();
     command(r, patch_here);
     run(r, 5);
-    assert_false(r->unit.picture.sar.command.has_layover);
+    assert_false(r->unit.picture.sar.command.is_plan);
     press(r, 5);
     assert_true(labelled(r, 16, "SAR", 0));
     press(r, 16);
     assert_true(labelled(r, 16, "SAR", 1));
-    assert_true(r->unit.page.picture == LM_PICTURE_PATCH &&
-                r->unit.picture.sar.command.has_layover);
+    assert_true(r->unit.page.picture == LM_PICTURE_PATCH && r->unit.picture.sar.command.is_plan);
     run(r, 5);
     assert_true(lit_pixels(r) > 10000);
     press(r, 16);
-    assert_false(r->unit.picture.sar.command.has_layover);
+    assert_false(r->unit.picture.sar.command.is_plan);
     free_rig(r);
 }
 

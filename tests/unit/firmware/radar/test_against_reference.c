@@ -25,7 +25,7 @@ struct world {
     double table_db[REF_GRAIN_VALUES];
     struct ref_view view; /* of the patch */
     struct lm_environment environment;
-    bool is_rainy;
+    bool is_rainy, is_plan;
 };
 
 /* How far apart two pictures are. */
@@ -122,11 +122,12 @@ static struct lm_sar start_patch(struct world *w, int look_deg, uint32_t cell_mm
         .cell_mm = cell_mm,
         .look_azimuth = FX_BAM_DEG(look_deg),
         .range_m = range_m,
-        .height_m_q6 = height_m * 64};
-    set_params(w);
-    const struct lm_sar_setup scene = {.reference_m_q10 = (int32_t)lround(reference_m * 1024),
-                                       .sea_state = LM_SEA_STATE_OF_IMAGE,
-                                       .environment = w->is_rainy ? &w->environment : NULL};
+        .height_m_q6 = height_m * 64,
+        .is_plan = w->is_plan};
+    const struct lm_sar_setup scene = {
+        .relief = {.reference_m_q10 = (int32_t)lround(reference_m * 1024)},
+        .sea_state = LM_SEA_STATE_OF_IMAGE,
+        .environment = w->is_rainy ? &w->environment : NULL};
     assert_int_equal(lm_sar_start(&sar, &w->radar, &w->map.db, &command, &scene), LM_OK);
     for (uint32_t line = 0; line < sar.lines; line += 4) {
         lm_sar_prefetch(&sar, &w->map.tiles, line);
@@ -208,7 +209,8 @@ static void score_patch(struct world *w, int look_deg, double cell_m, double ran
                              .range_m = range_m,
                              .antenna_m = height_m,
                              .cell_m = cell_m,
-                             .cell_count = CELLS};
+                             .cell_count = CELLS,
+                             .is_plan = w->is_plan};
     if (w->is_rainy) {
         make_rain(w, &wanted);
     }
@@ -217,6 +219,7 @@ static void score_patch(struct world *w, int look_deg, double cell_m, double ran
     set_params(w);
     assert_int_equal(ref_sar_patch(&picture, &w->ref, &wanted, &w->params), 0);
     w->view = picture.view;
+    w->params.lean = ref_sar_lean(&wanted, picture.view.reference_m);
     struct lm_sar sar = start_patch(w, look_deg, (uint32_t)lround(cell_m * 1000), (uint32_t)range_m,
                                     (int32_t)height_m, picture.view.reference_m);
     struct ref_bin *copy = calloc(CELLS + REF_GUARD_CELLS, sizeof *copy);
@@ -249,14 +252,14 @@ TEST(patches_agree_with_the_reference)
     judge_stages(&scores.stage);
     /* The firmware's sample points lie up to 3 cm beside the reference's (test_geo.c): one in two
      * hundred so falls into the neighbouring cell of the map, and where that is of another class
-     * the pixel differs. */
+     * the pixel differs. Layover shares a cell between two pixels. */
     assert_true(whole->beyond_half_db * 200 <= whole->pixels);
-    assert_true(whole->beyond_1_grey * 200 <= whole->pixels);
-    /* Seven in a thousand more where a shadow that begins before the patch ends elsewhere: the
+    assert_true(whole->beyond_1_grey * 150 <= whole->pixels);
+    /* Six in a thousand more where a shadow that begins before the patch ends elsewhere: the
      * houses of this country stand in the coarse cells of the foreground, and are narrower than
      * LM_SAR_FOREGROUND_LINES. */
-    assert_true(foregrounds->beyond_half_db * 100 <= foregrounds->pixels);
-    assert_true(foregrounds->beyond_1_grey * 100 <= foregrounds->pixels);
+    assert_true(foregrounds->beyond_half_db * 80 <= foregrounds->pixels);
+    assert_true(foregrounds->beyond_1_grey * 80 <= foregrounds->pixels);
 }
 
 /* The same through rain, whose edge runs through each picture. */

@@ -79,14 +79,14 @@ TEST(tops_appear_where_the_reference_puts_them)
     hs_rng_seed(&rng, 22);
     static struct lm_scan_line ground;
     static int32_t level[LM_CELLS_ROOM];
-    static uint64_t scratch[LM_CELLS_ROOM];
-    double power[CELLS], top_m[CELLS], laid[CELLS];
+    static int32_t laid_q8[LM_LAYOVER_ROOM];
+    double power[CELLS], nearer[CELLS], laid[CELLS];
     for (int n = 0; n < 200; n++) {
         const double lean = 0.05 + hs_rng_uniform(&rng), cell_m = 1 + 9 * hs_rng_uniform(&rng);
-        const struct lm_layover l = {.reference_m_q10 = 100 * 1024,
-                                     .lean_q16 = (int32_t)lround(lean * 65536),
-                                     .cell_m_q8 = (uint32_t)lround(cell_m * 256),
-                                     .cells = CELLS};
+        const struct lm_layover_view l = {.reference_m_q10 = 100 * 1024,
+                                          .lean_q16 = (uint32_t)lround(lean * 65536),
+                                          .cell_m_q8 = (uint32_t)lround(cell_m * 256),
+                                          .cells = CELLS};
         for (uint32_t i = 0; i < CELLS; i++) {
             const double hill_m = 100 + 20 * sin(i / 9.0 + n);
             const uint32_t height_code = hs_rng_below(&rng, 6) ? 0 : hs_rng_below(&rng, 16);
@@ -94,15 +94,20 @@ TEST(tops_appear_where_the_reference_puts_them)
             ground.elevation_m_q14[i] = (int32_t)lround(hill_m * 16384);
             level[i] = (int32_t)hs_rng_below(&rng, 60 * 256) - 40 * 256;
             power[i] = pow(10, level[i] / 2560.0);
-            top_m[i] = hill_m + tiny_classes()->height_dm[height_code] / 10.0 - 100;
+            const double height_m = tiny_classes()->height_dm[height_code] / 10.0,
+                         cells_m = l.lean_q16 / 65536.0 / (l.cell_m_q8 / 256.0);
+            nearer[i] =
+                (round(16 * (hill_m - 100) * cells_m) + round(16 * height_m * cells_m)) / 16;
         }
-        lm_layover_run(&l, tiny_classes(), &ground, level, scratch);
-        ref_layover(power, top_m, CELLS, l.lean_q16 / 65536.0 / (l.cell_m_q8 / 256.0), laid);
+        struct lm_layover layover;
+        lm_layover_set(&layover, tiny_classes(), &l);
+        const int32_t *shown_q8 = lm_layover_run(&layover, &ground, level, laid_q8);
+        ref_layover(power, nearer, CELLS, laid);
         for (uint32_t i = 0; i < CELLS; i++) {
-            /* Places are known to 1/256 of a cell, so to that part of the neighbours' power. */
+            /* What is half-way between two sixteenths of a cell may be rounded to either. */
             const double beside =
-                0.02 * (i > 0 ? laid[i - 1] : 0) + 0.02 * (i + 1 < CELLS ? laid[i + 1] : 0) + 1e-6;
-            const double shown = pow(10, level[i] / 2560.0);
+                0.08 * (i > 0 ? laid[i - 1] : 0) + 0.08 * (i + 1 < CELLS ? laid[i + 1] : 0) + 1e-6;
+            const double shown = pow(10, shown_q8[i] / 2560.0);
             assert_true(shown < 1.05 * laid[i] + beside && shown > 0.95 * laid[i] - beside);
         }
     }

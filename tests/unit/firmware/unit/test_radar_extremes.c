@@ -131,7 +131,6 @@ static void draw_patch(struct rig *r, uint32_t cell_mm)
     struct lm_control control = patch_here;
     control.sar = (struct lm_sar_command){.centre = patch_here.sar.centre,
                                           .cell_mm = cell_mm,
-                                          .has_layover = true,
                                           .range_m = 60000,
                                           .height_m_q6 = 8000 * 64};
     const uint32_t refused = r->unit.count.commands_refused;

@@ -180,12 +180,13 @@ TEST(a_patch_completes_and_stays)
 /* A patch from a commanded place in the air, so that it is the same whenever it is asked for. */
 static const struct lm_control patch_from_afar = {
     .kind = LM_CONTROL_SAR,
-    .sar = {.centre = {FX_BAM_DEG(46), FX_BAM_DEG(342) / 31},
-            .cell_mm = 5000,
-            .look_azimuth = FX_BAM_DEG(30),
-            .range_m = 12000,
-            .height_m_q6 = 2000 * 64,
-            .has_layover = true}};
+    .sar = {
+        .centre = {FX_BAM_DEG(46), FX_BAM_DEG(342) / 31},
+        .cell_mm = 5000,
+        .look_azimuth = FX_BAM_DEG(30),
+        .range_m = 12000,
+        .height_m_q6 = 2000 * 64,
+    }};
 
 /* The patch goes when navigation does, whether or not the display takes a frame. */
 TEST(a_patch_that_loses_its_navigation_is_drawn_again_though_no_frame_is_shown)

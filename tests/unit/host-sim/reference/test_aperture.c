@@ -191,12 +191,12 @@ TEST(lines_are_spread_with_their_energy)
 TEST(layover_moves_a_top_nearer_and_keeps_the_energy)
 {
     enum { CELLS = 64 };
-    double power[CELLS] = {0}, top_m[CELLS] = {0}, laid[CELLS];
+    double power[CELLS] = {0}, nearer[CELLS] = {0}, laid[CELLS];
     const double shift = tan(20 * pi / 180) / 2, moved = 30 * shift;
     power[40] = 3;
-    top_m[40] = 30;
+    nearer[40] = moved;
     power[10] = 1;
-    ref_layover(power, top_m, CELLS, shift, laid);
+    ref_layover(power, nearer, CELLS, laid);
     double sum = 0, place = 0;
     for (int i = 0; i < CELLS; i++) {
         sum += laid[i];
@@ -209,8 +209,8 @@ TEST(layover_moves_a_top_nearer_and_keeps_the_energy)
     const double slant_m = hypot(20000 * sin(20 * pi / 180) - 30, 20000 * cos(20 * pi / 180));
     const double nearer_m = 20000 * cos(20 * pi / 180) - 2 * moved;
     assert_true(fabs(hypot(20000 * sin(20 * pi / 180), nearer_m) - slant_m) < 0.05);
-    top_m[0] = 1000; /* out of the patch */
+    nearer[0] = 1000; /* out of the patch */
     power[0] = 9;
-    ref_layover(power, top_m, CELLS, shift, laid);
+    ref_layover(power, nearer, CELLS, laid);
     assert_true(laid[0] == 0);
 }

@@ -74,8 +74,8 @@ TEST(a_patch_takes_the_effects_behind_it_and_no_other_word)
 {
     static const struct {
         const char *words;
-        int has_layover, is_steady;
-    } cases[] = {{"", 0, 0}, {" layover", 1, 0}, {" steady", 0, 1}, {" steady layover", 1, 1}};
+        int is_plan, is_steady;
+    } cases[] = {{"", 0, 0}, {" plan", 1, 0}, {" steady", 0, 1}, {" steady plan", 1, 1}};
     for (size_t i = 0; i < 4; i++) {
         struct script s;
         char text[200];
@@ -85,7 +85,7 @@ TEST(a_patch_takes_the_effects_behind_it_and_no_other_word)
         for (int seconds = 0; seconds < 2; seconds++) {
             const struct lm_control c = at(&s, seconds);
             assert_int_equal(c.kind, LM_CONTROL_SAR);
-            assert_int_equal(c.sar.has_layover, cases[i].has_layover);
+            assert_int_equal(c.sar.is_plan, cases[i].is_plan);
             assert_int_equal(c.sar.is_steady, cases[i].is_steady);
             assert_int_equal(c.sar.is_from_ownship, seconds == 0);
         }
