@@ -73,6 +73,34 @@ int image_view_fit(const struct image *image, struct image_view *v, int level, i
     return 0;
 }
 
+int image_view_cells(const struct image *image, struct image_view *v, int level)
+{
+    const int shift = image->header.shift0 + level;
+    int zone = -1;
+    for (uint32_t i = 0; i < image->header.band_count; i++) {
+        const struct lm_band *b = &image->db.bands[i];
+        zone = b->lod == level && (zone < 0 || b->zone < zone) ? b->zone : zone;
+    }
+    if (zone < 0) {
+        return hs_error("--level", "choose another one", "there is no tile on it");
+    }
+    v->level = level;
+    if (v->area.width == 0) {
+        v->area = level_area(image, level);
+    }
+    const int64_t high = (int64_t)1 << shift, wide = (int64_t)1 << (shift + zone);
+    const int64_t west = (int64_t)v->area.west & ~(wide - 1);
+    const int64_t east = ((int64_t)v->area.west + v->area.width + wide - 1) & ~(wide - 1);
+    v->area.west = (uint32_t)west;
+    v->area.width = east - west;
+    v->area.south &= ~(high - 1);
+    v->area.north = (v->area.north + high - 1) & ~(high - 1);
+    v->width = (int)(v->area.width / wide);
+    v->height = (int)((v->area.north - v->area.south) / high);
+    v->pixel_m = ldexp(IMAGE_METRES_PER_BAM, shift);
+    return 0;
+}
+
 /* What a drawing remembers of the tiles it has met. */
 struct look {
     const struct image *image;
@@ -179,12 +207,13 @@ static double spot_value(const struct image *image, enum image_plane plane, cons
     }
 }
 
-static void read_values(struct look *l, const struct image_view *v, float *values)
+static void read_values(struct look *l, const struct image_view *v, int first, int rows,
+                        float *values)
 {
     const double north_step = (double)(v->area.north - v->area.south) / v->height;
     const double east_step = (double)v->area.width / v->width;
-    for (int y = 0; y < v->height; y++) {
-        const int64_t latitude = v->area.north - (int64_t)((y + 0.5) * north_step);
+    for (int y = 0; y < rows; y++) {
+        const int64_t latitude = v->area.north - (int64_t)((first + y + 0.5) * north_step);
         for (int x = 0; x < v->width; x++) {
             const uint32_t longitude = v->area.west + (uint32_t)((x + 0.5) * east_step);
             struct spot s;
@@ -193,6 +222,18 @@ static void read_values(struct look *l, const struct image_view *v, float *value
                 is_there ? (float)spot_value(l->image, v->plane, &s, latitude) : NAN;
         }
     }
+}
+
+int image_view_read(const struct image *image, struct image_view *v, int y, int rows, float *values)
+{
+    struct look l = {.image = image, .checked = calloc(image->header.entry_count + 1u, 1)};
+    if (!l.checked) {
+        return hs_error("image", NULL, "out of memory");
+    }
+    read_values(&l, v, y, rows, values);
+    v->damaged_tiles += l.damaged;
+    free(l.checked);
+    return 0;
 }
 
 static int by_value(const void *a, const void *b)
@@ -269,7 +310,7 @@ int image_view_draw(const struct image *image, struct image_view *v, uint8_t *pi
                      ? 0
                      : hs_error("picture", "choose a smaller --max-size", "out of memory");
     if (result == 0) {
-        read_values(&l, v, values);
+        read_values(&l, v, 0, v->height, values);
         v->damaged_tiles = l.damaged;
         v->has_data = has_data(v, values);
         if (!(v->white > v->black)) {

@@ -1,3 +1,4 @@
+#include "area_option.h"
 #include "commands.h"
 
 #include "hs/error.h"
@@ -44,23 +45,6 @@ static bool read_settings(struct settings *s, int argc, char **argv, const char 
     };
     return db_options_read(&usage, options, sizeof options / sizeof options[0], argc, argv,
                            exit_code);
-}
-
-static int parse_area(const char *text, struct image_area *area)
-{
-    double d[4];
-    char end;
-    if (sscanf(text, "%lf,%lf,%lf,%lf%c", &d[0], &d[1], &d[2], &d[3], &end) != 4 ||
-        !(d[0] >= -90 && d[2] <= 90 && d[0] < d[2]) || !(fabs(d[1]) <= 360 && fabs(d[3]) <= 360) ||
-        d[1] == d[3]) {
-        return hs_error("--area", "see landmass-db picture --help",
-                        "must be south,west,north,east in degrees");
-    }
-    area->south = image_bam(d[0]);
-    area->north = image_bam(d[2]);
-    area->west = (uint32_t)image_bam(d[1]);
-    area->width = (int64_t)(uint32_t)(image_bam(d[3]) - image_bam(d[1]));
-    return area->width > 0 ? 0 : hs_error("--area", NULL, "is empty");
 }
 
 static int parse_plane(const char *name)
@@ -129,7 +113,7 @@ static int run(const char *path, const struct settings *s)
 {
     struct image_view view = {.black = s->black, .white = s->white};
     const int plane = parse_plane(s->plane);
-    if (plane < 0 || (s->area && parse_area(s->area, &view.area) != 0)) {
+    if (plane < 0 || (s->area && db_area_read(&view.area, s->area) != 0)) {
         return HS_EXIT_USAGE;
     }
     view.plane = (enum image_plane)plane;

@@ -16,6 +16,8 @@ static const struct hs_command commands[] = {
     {"inspect", "print what a database image holds", db_cmd_inspect},
     {"convert", "make an image of version 3 from one of version 2", db_cmd_convert},
     {"verify", "check every byte of a database image", db_cmd_verify},
+    {"qgis", "make a QGIS project to draw exemplars and corrections in", db_cmd_qgis},
+    {"export", "write the planes of a database image as GeoTIFF", db_cmd_export},
     {"picture", "draw a plane of a database image", db_cmd_picture},
 };
 

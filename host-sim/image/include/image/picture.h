@@ -36,6 +36,17 @@ struct image_view {
  * the longer side has at most `max_size` pixels. Returns 0, or -1 with the error reported. */
 int image_view_fit(const struct image *image, struct image_view *view, int level, int max_size);
 
+/* Settle area and size so that each pixel is one cell of `level`: the area, or all that the level
+ * covers, is widened to whole cells, of the finest zone where the level has several. black and
+ * white are left alone. Returns 0, or -1 with the error reported: the level has no tile. */
+int image_view_cells(const struct image *image, struct image_view *view, int level);
+
+/* The plane's values at the centres of rows y .. y + rows - 1 into rows * width floats, NAN where
+ * there is no data; cells as image_view_draw takes them. Adds to damaged_tiles. Returns 0, or -1
+ * with the error reported (no memory). */
+int image_view_read(const struct image *image, struct image_view *view, int y, int rows,
+                    float *values);
+
 /* Draw into width * height RGB pixels, row 0 north. Each pixel shows the cell under its centre,
  * from the view's level or the next coarser one that has it. Settles black and white. Tiles whose
  * checksum fails are left black and counted. Returns 0, or -1 with the error reported. */
