@@ -1,3 +1,4 @@
+#include "gis/class_numbers.h"
 #include "gis/gdal_start.h"
 #include "hs/error.h"
 #include "vectors/output.h"
@@ -66,38 +67,54 @@ static int warp(const struct vector_map *map, GDALDatasetH ground, const char *p
                                 "cannot be brought to the area: %s", db_gdal_complaint());
 }
 
+/* What the pixels mean: codes of a land cover, or numbers of classes. */
+struct meaning {
+    const struct db_code_map *codes; /* NULL: class numbers */
+    struct db_class_numbers numbers;
+};
+
+static int class_of(const struct meaning *m, int32_t value)
+{
+    if (m->codes) {
+        return db_code_map_class(m->codes, value);
+    }
+    const int index = value >= 0 && value < 256 ? m->numbers.class_of[value] : DB_CLASS_UNKNOWN;
+    return index == DB_CLASS_UNKNOWN ? -1 : index;
+}
+
 static int take_pixels(struct vector_map *map, const int32_t *pixels, const char *path,
-                       const struct db_code_map *codes, const struct db_class_table *table)
+                       const struct meaning *meaning)
 {
     const size_t cells = (size_t)map->grid.width * (size_t)map->grid.height;
     for (size_t i = 0; i < cells; i++) {
-        const int32_t v = pixels[i];
-        if (v == NOT_COVERED) {
-            continue;
-        }
-        const int class_index = codes ? db_code_map_class(codes, v)
-                                : v == DB_CLASS_NODATA || (v >= 0 && v < table->count) ? v
-                                                                                       : -1;
+        const int class_index =
+            pixels[i] == NOT_COVERED ? DB_CLASS_NODATA : class_of(meaning, pixels[i]);
         if (class_index < 0) {
             return hs_error(path, "give a --map of its codes, or the class table it was made with",
-                            "holds class %d, but the table ends at %d", v, table->count - 1);
+                            "holds class %d, which the table has not", pixels[i]);
         }
         map->classes[i] = (uint8_t)class_index;
     }
     return 0;
 }
 
-static int fill(struct vector_map *map, GDALDatasetH ground, const char *path,
-                const struct db_code_map *codes, const struct db_class_table *table)
+/* Every pixel is looked at: what is unknown is refused before the work. */
+static int read_meaning(struct meaning *m, GDALDatasetH ground, const char *path,
+                        const struct db_class_table *table)
 {
-    const size_t cells = (size_t)map->grid.width * (size_t)map->grid.height;
+    GDALRasterBandH band = GDALGetRasterBand(ground, 1);
     if (GDALGetRasterCount(ground) != 1) {
         return hs_error(path, "give one band", "holds %d bands instead of one",
                         GDALGetRasterCount(ground));
     }
-    if (codes && db_code_map_survey(codes, table, GDALGetRasterBand(ground, 1), path) != 0) {
-        return -1;
-    }
+    return m->codes ? db_code_map_survey(m->codes, table, band, path)
+                    : db_class_numbers_read(&m->numbers, band, path, table, false);
+}
+
+static int fill(struct vector_map *map, GDALDatasetH ground, const char *path,
+                const struct meaning *meaning)
+{
+    const size_t cells = (size_t)map->grid.width * (size_t)map->grid.height;
     int32_t *pixels = malloc(cells * sizeof *pixels);
     if (!pixels) {
         return hs_error(path, "choose a smaller --area, or larger cells", "out of memory");
@@ -107,7 +124,7 @@ static int fill(struct vector_map *map, GDALDatasetH ground, const char *path,
     }
     int result = warp(map, ground, path, pixels);
     if (result == 0) {
-        result = take_pixels(map, pixels, path, codes, table);
+        result = take_pixels(map, pixels, path, meaning);
     }
     free(pixels);
     return result;
@@ -122,7 +139,11 @@ int vector_ground(struct vector_map *map, const char *path, const struct db_code
         return hs_error(path, "check the name and that `gdalinfo` can read it",
                         "cannot be opened as a class raster: %s", db_gdal_complaint());
     }
-    const int result = fill(map, ground, path, codes, table);
+    struct meaning meaning = {.codes = codes};
+    int result = read_meaning(&meaning, ground, path, table);
+    if (result == 0) {
+        result = fill(map, ground, path, &meaning);
+    }
     GDALClose(ground);
     return result;
 }

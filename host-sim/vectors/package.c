@@ -71,8 +71,9 @@ int vector_package_write(const struct vector_map *map, const struct db_class_tab
 {
     char *temporary = hs_atomic_temporary_name(path);
     if (!temporary) {
-        return hs_error(path, NULL, "out of memory");
+        return -1;
     }
+    unlink(temporary); /* the driver wants to make the file itself */
     CPLErrorReset();
     GDALDatasetH package =
         GDALCreate(GDALGetDriverByName("GPKG"), temporary, 0, 0, 0, GDT_Unknown, NULL);
@@ -86,7 +87,7 @@ int vector_package_write(const struct vector_map *map, const struct db_class_tab
     } else {
         result = hs_error(path, "check that the folder can be written and has space",
                           "cannot be written: %s", db_gdal_complaint());
-        unlink(temporary);
+        hs_atomic_drop(temporary);
     }
     free(temporary);
     return result;

@@ -109,7 +109,7 @@ TEST(every_element_that_osmium_counts_has_one_fate)
         assert_true(towns[i].missing < 0 || r.missing == towns[i].missing);
         printf("# %s: %ld buildings of %ld ways that have the tag; %ld elements lost by name\n",
                towns[i].name, r.buildings, towns[i].buildings, r.lost);
-        assert_true(r.buildings > 0.98 * (double)towns[i].buildings);
+        assert_true((double)r.buildings > 0.98 * (double)towns[i].buildings);
     }
     if (here == 0) {
         skip();

@@ -6,10 +6,11 @@
 #include "gis/code_map.h"
 #include "vectors/map.h"
 
-/* Fill the class plane from a class raster, or with `codes` a land cover: the pixel under a cell's
- * centre, or the commonest one where pixels are half a cell or smaller. Call before
- * vector_map_burn. Returns 0, or -1 with the error reported: the raster cannot be read or has no
- * place, or holds a code or class that is unknown. */
+/* Fill the class plane from a class raster, whose numbers are matched by name
+ * (gis/class_numbers.h), or with `codes` a land cover: the pixel under a cell's centre, or the
+ * commonest one where pixels are half a cell or smaller. Call before vector_map_burn. Returns 0, or
+ * -1 with the error reported: the raster cannot be read or has no place, or holds a code or class
+ * that is unknown. */
 int vector_ground(struct vector_map *map, const char *path, const struct db_code_map *codes,
                   const struct db_class_table *table);
 

@@ -6,6 +6,7 @@
 
 #include <gdal.h>
 #include <math.h>
+#include <ogr_api.h>
 #include <ogr_srs_api.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -263,6 +264,32 @@ TEST(a_ragged_coast_keeps_its_sides)
     }
     assert_int_equal(class_at(220, 220), VEGETATION);
     assert_int_equal(class_at(5, 5), WATER);
+}
+
+/* Capes sharper than a right angle: what lies before their tips is nearest to two lines at once, of
+ * which only one tells the side. */
+TEST(the_sea_before_a_sharp_cape_is_sea)
+{
+    enum { CAPES = 24 };
+    const double turn = 2 * 3.14159265358979 / CAPES, half = 0.03;
+    begin_osm();
+    const int first = next_node;
+    for (int i = 0; i < CAPES; i++) {
+        node(220 + 100 * cos(i * turn - half), 220 + 100 * sin(i * turn - half));
+        node(220 + 160 * cos(i * turn), 220 + 160 * sin(i * turn));
+        node(220 + 100 * cos(i * turn + half), 220 + 100 * sin(i * turn + half));
+    }
+    island(first, 3 * CAPES, 0);
+    assert_int_equal(run_osm(""), 0);
+    for (int i = 0; i < CAPES; i++) {
+        const double c = cos(i * turn), s = sin(i * turn);
+        for (int side = -2; side <= 2; side++) {
+            assert_int_equal(class_at(220 + 162.5 * c - side * s, 220 + 162.5 * s + side * c),
+                             WATER);
+        }
+        assert_int_equal(class_at(220 + 110 * c, 220 + 110 * s), VEGETATION);
+    }
+    assert_false(scene_log_holds("it is open"));
 }
 
 TEST(an_open_coast_is_warned_of_with_its_length)
@@ -532,6 +559,32 @@ static double level_value(double x, double y)
     return 100;
 }
 
+TEST(the_geopackage_holds_what_was_made)
+{
+    char options[512];
+    begin_osm();
+    rectangle(1, 100, 100, 30, 20, TAG("building", "yes") TAG("height", "14"));
+    line(2, 20, 20, 200, 20, TAG("railway", "rail"));
+    line(3, 20, 30, 200, 30, TAG("highway", "footway"));
+    snprintf(options, sizeof options, "--package %s", scene_path("look.gpkg"));
+    assert_int_equal(run_osm(options), 0);
+    GDALDatasetH file = GDALOpenEx(scene_path("look.gpkg"), GDAL_OF_VECTOR, NULL, NULL, NULL);
+    assert_non_null(file);
+    assert_int_equal(GDALDatasetGetLayerCount(file), 3);
+    OGRLayerH areas = GDALDatasetGetLayerByName(file, "areas");
+    assert_int_equal(OGR_L_GetFeatureCount(areas, TRUE), 1);
+    assert_int_equal(OGR_L_GetFeatureCount(GDALDatasetGetLayerByName(file, "lines"), TRUE), 1);
+    OGRFeatureH house = OGR_L_GetNextFeature(areas);
+    const OGRFeatureDefnH fields = OGR_L_GetLayerDefn(areas);
+    assert_string_equal(OGR_F_GetFieldAsString(house, OGR_FD_GetFieldIndex(fields, "origin")),
+                        "way 1");
+    assert_string_equal(OGR_F_GetFieldAsString(house, OGR_FD_GetFieldIndex(fields, "class")),
+                        "structure");
+    assert_true(OGR_F_GetFieldAsDouble(house, OGR_FD_GetFieldIndex(fields, "height_m")) == 14);
+    OGR_F_Destroy(house);
+    GDALClose(file);
+}
+
 TEST(build_takes_what_vectors_makes)
 {
     begin_osm();
@@ -579,6 +632,31 @@ TEST(vectors_are_burnt_over_a_land_cover)
     assert_int_equal(class_at(60, 60), STRUCTURE);
     assert_int_equal(class_at(100, 200), FOREST);
     assert_int_equal(class_at(400, 200), WATER);
+}
+
+/* The six classes of scene_classes() stand in another order than those of landcover.classes. */
+TEST(a_class_raster_under_the_vectors_is_matched_by_its_names)
+{
+    char options[512];
+    scene_classes();
+    begin_osm();
+    rectangle(1, 0, 0, 450, 440, TAG("natural", "water"));
+    scene_text("g.rules", "[lake]\nfrom = area\nwhere = natural=water\nclass = water\n");
+    add("</osm>\n");
+    scene_text("v.osm", text);
+    scene_text("turned.classes",
+               "[water]\ncolour = 0 0 9\nkind = water\ngamma_db = -40\nspread_db = 3\n"
+               "limits_db = -49 -31\n");
+    assert_int_equal(scene_run("vectors --vectors %s --rules %s --classes %s --out %s",
+                               scene_path("v.osm"), scene_path("g.rules"),
+                               scene_path("turned.classes"), scene_path("g.tif")),
+                     0); /* water is class 0 here, and soil in landcover.classes */
+    begin_osm();
+    rectangle(1, 50, 50, 30, 30, TAG("building", "yes"));
+    snprintf(options, sizeof options, "--ground %s", scene_path("g.tif"));
+    assert_int_equal(run_osm(options), 0);
+    assert_int_equal(class_at(60, 60), STRUCTURE);
+    assert_int_equal(class_at(200, 200), WATER);
 }
 
 /* ---- other formats ---- */
