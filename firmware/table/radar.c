@@ -146,9 +146,9 @@ const struct lm_radar lm_radar_default = {
                      .edge_trees_db_q8 = LM_DB_Q8(2),
                      .shore_db_q8 = LM_DB_Q8(5),
                      .shore_width_m = 60},
-    /* UNSOURCED: chosen so that a grid town flashes by some 18 dB on its cardinal points, as the
-     * settlements of a Sentinel-1 scene differ (docs/database.md). */
-    .facing = {.lobe_half = FX_BAM_DEG(7), .floor_permille = 60},
+    /* UNSOURCED: chosen so that levels inside the towns of a Sentinel-1 scene spread as they do
+     * there, and its settlements differ; a grid town flashes by some 12 dB (docs/realism.md). */
+    .facing = {.lobe_half = FX_BAM_DEG(5), .floor_permille = 300},
     /* UNSOURCED: a sea is brightest against the wind and darkest across it, by some 5 dB at X band;
      * [GIT] has 6 dB between up and down. */
     .sea = {.upwind_db_q8 = LM_DB_Q8(5), .crosswind_db_q8 = 0, .downwind_db_q8 = LM_DB_Q8(2)},

@@ -10,7 +10,7 @@ enum { CELLS = LM_TILE_CELLS };
 
 /* UNSOURCED: what counts as built-up, and how steeply towns are usually looked at: from 3,000 m,
  * 20 km away. */
-static const double surroundings_m = 150, built_share = 0.05, grazing_tangent = 0.15;
+static const double surroundings_m = 150, built_share = 0.15, grazing_tangent = 0.15;
 /* Levels without towns of their own are not turned up to the table's mean by force. */
 static const double gain_most_db = 12;
 
@@ -54,7 +54,8 @@ void build_towns_mark(const uint16_t cells[CELLS][CELLS], const struct lm_classe
             const int west = within(c - half), east = within(c + half + 1);
             const int found =
                 sum[north][east] - sum[south][east] - sum[north][west] + sum[south][west];
-            built[r][c] = found >= built_share * (north - south) * (east - west);
+            const float share = (float)found / (float)((north - south) * (east - west));
+            built[r][c] = share >= (float)built_share ? share : 0;
         }
     }
 }

@@ -38,7 +38,7 @@ static const double cell_spread_db = 1, cell_share_max = 0.15;
 /* Spots of structures. UNSOURCED, after the same scene: share of the ground, and in spreads the
  * mean of their exponential distribution and its end. Maps of shorter pixels than a house show it
  * by itself. */
-static const double spot_share = 0.04, spot_mean_spreads = 2, spot_end_spreads = 6.25;
+static const double spot_share = 0.04, spot_mean_spreads = 2.4, spot_end_spreads = 7.5;
 static const double house_m = 8;
 
 /* Density of the unscaled texture at x dB, but for a factor. */

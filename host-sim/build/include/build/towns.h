@@ -30,8 +30,8 @@ struct build_towns_tile {
     const float (*built)[LM_TILE_CELLS];      /* share of each cell that is built-up */
 };
 
-/* Mark cells whose surroundings, some 150 m wide and inside the tile, are built-up: structures on a
- * twentieth of them or more. */
+/* Mark cells whose surroundings, some 150 m wide and inside the tile, are built-up: the share of
+ * structures there where it is 15 % or more, else 0. */
 void build_towns_mark(const uint16_t cells[LM_TILE_CELLS][LM_TILE_CELLS],
                       const struct lm_classes *classes, double cell_m,
                       float built[LM_TILE_CELLS][LM_TILE_CELLS]);

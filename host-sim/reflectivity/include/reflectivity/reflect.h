@@ -34,7 +34,7 @@ enum { DB_REFLECT_STEPS = 1024 };
  * - cell: smooth over a few metres, 1 dB or less.
  *
  * Structures of a map that shows no single buildings are a mixture: on 4 % of their ground lie
- * bright spots, exponential in dB up to 6.25 spreads above the rest, which they may lift above the
+ * bright spots, exponential in dB up to 7.5 spreads above the rest, which they may lift above the
  * limits. Mean and deviation in dB are those of the table with them. Where the map shows buildings,
  * the display unit makes fronts and edges of them, and spots would count these twice. */
 struct db_reflect_law {

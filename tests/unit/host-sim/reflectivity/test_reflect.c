@@ -109,7 +109,7 @@ static const struct db_class woods = {.name = "woods",
 static const struct db_class structures = {.name = "town",
                                            .kind = DB_KIND_STRUCTURE,
                                            .gamma_db = 0,
-                                           .spread_db = 4,
+                                           .spread_db = 3,
                                            .low_db = -15,
                                            .high_db = 15,
                                            .texture = DB_TEXTURE_K,
@@ -200,8 +200,8 @@ TEST(neighbours_are_alike_as_in_a_real_picture)
             "# %s: spread %.2f dB; correlation %.2f, %.2f, %.2f, %.2f at 10, 30, 80, 300 "
             "m\n",
             classes[k]->name, m.deviation, at_10, at_30, at_80, at_300);
-        /* Less than Sentinel-1's 0.86, whose own cell is 20 m. */
-        assert_true(at_10 > 0.6 && at_10 < 0.9);
+        /* Less than Sentinel-1's 0.86, whose own cell is 20 m; least where there are spots. */
+        assert_true(at_10 > (classes[k] == &structures ? 0.5 : 0.65) && at_10 < 0.9);
         assert_true(at_30 > 0.3 && at_30 < 0.53);
         assert_true(at_80 > 0.03 && at_80 < 0.3 && fabs(at_300) < 0.05);
         assert_true(fabs(m.deviation / classes[k]->spread_db - 1) < 0.1);
@@ -247,8 +247,9 @@ static int by_value(const void *a, const void *b)
 }
 
 /* Sentinel-1: the brightest hundredth of a town's pixels has 38 % of its power; p95, p99 and p99.9
- * stand 9.7, 15.0 and 24.3 dB above the median. */
-TEST(the_brightest_hundredth_of_a_town_has_a_third_of_its_power)
+ * stand 9.7, 15.0 and 24.3 dB above the median. The database has less, because fronts, edges and
+ * facing add theirs in the picture: there it is 44 % (docs/realism.md). */
+TEST(the_brightest_hundredth_of_a_town_has_a_quarter_of_its_power)
 {
     static const double pixels_m[] = {2, 5, 10};
     static double values[SIDE * SIDE];
@@ -269,7 +270,7 @@ TEST(the_brightest_hundredth_of_a_town_has_a_third_of_its_power)
                       pixels_m[k], 100 * top / whole, values[SIDE * SIDE / 20 * 19] - median,
                       values[SIDE * SIDE / 100 * 99] - median,
                       values[SIDE * SIDE / 1000 * 999] - median);
-        assert_true(top / whole > 0.3 && top / whole < 0.5);
+        assert_true(top / whole > 0.2 && top / whole < 0.5);
         assert_true(fabs(10 * log10(whole / (SIDE * SIDE)) - law.mean_db) < 0.5);
     }
 }
