@@ -100,7 +100,7 @@ static void write_features(void)
     OGR_F_SetFieldString(f, 0, "one");
     OGR_F_SetFieldString(f, 1, "AL015");
     OGR_F_SetFieldString(f, 2, "tower");
-    OGR_F_SetFieldDouble(f, 3, 90); /* the long side, along x, then points to the south */
+    OGR_F_SetFieldDouble(f, 3, 30); /* the long side, along x, points to 120 degrees */
     OGR_F_SetFieldDouble(f, 4, 45);
     OGR_F_SetFieldDouble(f, 5, 2000);
     OGR_F_SetFieldDouble(f, 6, 500);
@@ -242,8 +242,9 @@ TEST(a_feature_without_its_model_is_a_box_of_its_table_or_counted)
     for (int i = 0; i < 2048 * 2048; i++) {
         const double east = (i % 2048 + 0.5 - 1536) * cell_x,
                      north = (1536 - i / 2048 - 0.5) * cell_y;
-        const bool is_inside = fabs(east) < 250 && fabs(north) < 1000;
-        const bool is_near = fabs(fabs(east) - 250) < 2 || fabs(fabs(north) - 1000) < 2;
+        const double x = 0.8660254 * east - 0.5 * north, y = 0.5 * east + 0.8660254 * north;
+        const bool is_inside = fabs(x) < 1000 && fabs(y) < 250;
+        const bool is_near = fabs(fabs(x) - 1000) < 2 || fabs(fabs(y) - 250) < 2;
         wrong += !is_near && h[i] != (float)(is_inside ? 45 : -9999);
         high += h[i] == 45;
     }
@@ -291,6 +292,17 @@ TEST(an_area_and_a_cell_choose_part_and_level)
     assert_int_equal(r.grid.height, 128);
     assert_true(image[0] == 200); /* the mean of the fine tile's pixels there */
     assert_true(image[255] == 77);
+    free(image);
+    db_raster_close(&r);
+    /* The mean of 4 x 4 pixels of the fine tile: rows 0 on, columns 512 on. */
+    image = read_band("part.tif", 1, &r);
+    for (int y = 0; y < 128; y++) {
+        double sum = 0;
+        for (int i = 0; i < 4; i++) {
+            sum += (double)fine(1, 600, 4 * y + i);
+        }
+        assert_true(fabs((double)image[y * 256] - sum / 4) <= 0.5);
+    }
     free(image);
     db_raster_close(&r);
 }

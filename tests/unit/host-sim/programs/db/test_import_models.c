@@ -231,6 +231,45 @@ TEST(gltf_has_its_own_axes_and_linear_colours)
     free(top);
 }
 
+/* A triangle 9 m eastwards and 18 m northwards, 3 m up, in centimetres. */
+TEST(collada_says_its_unit_and_its_axes)
+{
+    static const char *const ups[] = {"Z_UP", "Y_UP"};
+    static const char *const corners[] = {"0 0 300 900 0 300 0 1800 300",
+                                          "0 300 0 900 300 0 0 300 -1800"};
+    struct db_grid grid;
+    for (int k = 0; k < 2; k++) {
+        FILE *f = fopen(fixture_path("slab.dae"), "w");
+        fprintf(f,
+                "<?xml version=\"1.0\"?><COLLADA xmlns=\"http://www.collada.org/2005/11/"
+                "COLLADASchema\" version=\"1.4.1\"><asset><unit meter=\"0.01\"/><up_axis>%s"
+                "</up_axis></asset><library_geometries><geometry id=\"g\"><mesh><source id=\"p\">"
+                "<float_array id=\"a\" count=\"9\">%s</float_array><technique_common><accessor "
+                "source=\"#a\" count=\"3\" stride=\"3\"><param name=\"X\" type=\"float\"/><param "
+                "name=\"Y\" type=\"float\"/><param name=\"Z\" type=\"float\"/></accessor>"
+                "</technique_common></source><vertices id=\"v\"><input semantic=\"POSITION\" "
+                "source=\"#p\"/></vertices><triangles count=\"1\"><input semantic=\"VERTEX\" "
+                "source=\"#v\" offset=\"0\"/><p>0 1 2</p></triangles></mesh></geometry>"
+                "</library_geometries><library_visual_scenes><visual_scene id=\"s\"><node><"
+                "instance_geometry url=\"#g\"/></node></visual_scene></library_visual_scenes>"
+                "<scene><instance_visual_scene url=\"#s\"/></scene></COLLADA>",
+                ups[k], corners[k]);
+        fclose(f);
+        assert_int_equal(fixture_run(NULL, 0, "import --model %s --at 1,1 --cell 1 --out-top %s",
+                                     fixture_path("slab.dae"), fixture_path("slab.tif")),
+                         0);
+        float *top = read_band("slab.tif", 0, &grid);
+        assert_int_equal(grid.width, 9);
+        assert_int_equal(grid.height, 18);
+        for (int i = 0; i < 9 * 18; i++) {
+            const double x = i % 9 + 0.5, y = 17.5 - i / 9;
+            const double inside = 1 - x / 9 - y / 18;
+            assert_true(fabs(inside) < 0.01 || top[i] == (float)(inside > 0 ? 3 : -9999));
+        }
+        free(top);
+    }
+}
+
 static bool is_there(const char *name)
 {
     return access(fixture_path(name), F_OK) == 0;
@@ -300,12 +339,14 @@ TEST(hostile_models_cost_an_error)
 TEST(corners_that_are_no_numbers_are_left_out_and_counted)
 {
     char said[4096];
-    fixture_write("nan.obj",
-                  "v 0 0 0\nv 9 0 0\nv 9 9 0\nv nan 1 1\nv 1e30 1 1\nf 1 2 3\nf 1 2 5\n");
+    fixture_write(
+        "nan.obj",
+        "v 0 0 0\nv 9 0 0\nv 9 9 0\nv nan 1 1\nv 1e30 1 1\nv 9 0 4\nf 1 2 3\nf 1 2 5\nf 1 2 6\n");
     assert_int_equal(fixture_run(said, sizeof said, IMPORT("--at 1,1 --cell 1 --unit m --up z"),
                                  fixture_path("nan.obj"), fixture_path("nan.tif")),
                      0);
     assert_non_null(strstr(said, "1 triangles are left out: a corner is no number"));
+    assert_non_null(strstr(said, "1 triangles, 1 upright or without area"));
 }
 
 TEST(a_missing_texture_is_named_and_a_plain_colour_stands_for_it)
@@ -323,6 +364,68 @@ TEST(a_missing_texture_is_named_and_a_plain_colour_stands_for_it)
     float *red = read_band("image.tif", 0, &grid);
     assert_int_equal((int)red[20 * 40 + 16], 255);
     free(red);
+}
+
+/* A cover of wire over the whole, whose west half is holes. */
+TEST(what_is_transparent_is_looked_through)
+{
+    static uint8_t planes[4][16 * 16];
+    struct db_grid grid;
+    for (int i = 0; i < 256; i++) {
+        planes[0][i] = planes[1][i] = planes[2][i] = 99;
+        planes[3][i] = i % 16 < 8 ? 0 : 255;
+    }
+    GDALDatasetH memory = GDALCreate(GDALGetDriverByName("MEM"), "", 16, 16, 4, GDT_Byte, NULL);
+    for (int c = 0; c < 4; c++) {
+        assert_int_equal(GDALRasterIO(GDALGetRasterBand(memory, c + 1), GF_Write, 0, 0, 16, 16,
+                                      planes[c], 16, 16, GDT_Byte, 0, 0),
+                         CE_None);
+    }
+    GDALClose(GDALCreateCopy(GDALGetDriverByName("PNG"), fixture_path("wire.png"), memory, FALSE,
+                             NULL, NULL, NULL));
+    GDALClose(memory);
+    fixture_write("wire.mtl", "newmtl ground\nKd 0.2 0.2 0.2\nnewmtl wire\nmap_Kd wire.png\n");
+    fixture_write("wire.obj",
+                  "mtllib wire.mtl\nv 0 0 0\nv 32 0 0\nv 32 32 0\nv 0 32 0\nv 0 0 5\n"
+                  "v 32 0 5\nv 32 32 5\nv 0 32 5\nvt 0 0\nvt 1 0\nvt 1 1\nvt 0 1\n"
+                  "usemtl ground\nf 1 2 3 4\nusemtl wire\nf 5/1 6/2 7/3 8/4\n");
+    assert_int_equal(fixture_run(NULL, 0,
+                                 "import --model %s --unit m --up z --at 1,1 --cell 2 --out-image "
+                                 "%s --out-top %s",
+                                 fixture_path("wire.obj"), fixture_path("wire.tif"),
+                                 fixture_path("wiretop.tif")),
+                     0);
+    float *grey = read_band("wire.tif", 0, &grid), *top = read_band("wiretop.tif", 0, &grid);
+    for (int i = 0; i < 256; i++) {
+        assert_int_equal((int)grey[i], i % 16 < 8 ? 51 : 99);
+        assert_int_equal((int)top[i], i % 16 < 8 ? 0 : 5);
+    }
+    free(grey);
+    free(top);
+}
+
+/* Rotterdam's houses: one of 74 textures is there. */
+TEST(a_model_with_one_texture_of_74_goes_on_without_the_others)
+{
+    char path[512], said[4096];
+    struct db_grid grid;
+    if (!support_data_path("city_delft_rotterdam/rotterdam/derived_rotterdam.obj", path,
+                           sizeof path)) {
+        skip();
+    }
+    assert_int_equal(fixture_run(said, sizeof said,
+                                 "import --model %s --unit m --up z --crs EPSG:28992 --origin "
+                                 "90000,435000 --cell 0.5 --out-image %s --out-top %s",
+                                 path, fixture_path("rotterdam.tif"), fixture_path("rtop.tif")),
+                     0);
+    assert_non_null(strstr(said, " textures are missing")); /* of roofs; no wall is seen */
+    float *top = read_band("rtop.tif", 0, &grid);
+    double highest = 0;
+    for (int i = 0; i < grid.width * grid.height; i++) {
+        highest = fmax(highest, (double)top[i]);
+    }
+    assert_true(highest > 18 && highest < 18.3);
+    free(top);
 }
 
 TEST(openflight_without_its_reader_names_the_package)
