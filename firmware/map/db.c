@@ -208,6 +208,24 @@ static int find_tiles(struct lm_db *db, const struct lm_image_header *h)
     return db->tiles_size != UINT32_MAX && db->detail_size != UINT32_MAX ? LM_OK : LM_ERR_CORRUPT;
 }
 
+/* The grid of the geoid is optional. */
+static int read_geoid(struct lm_db *db, const struct lm_image_header *h, uint32_t poll_limit)
+{
+    db->geoid.rows = 0;
+    if (section_of_type(h, LM_IMAGE_GEOID) == NULL) {
+        return LM_OK;
+    }
+    const struct lm_image_section *s = find_section(h, LM_IMAGE_GEOID, sizeof db->geoid);
+    if (s == NULL) {
+        return LM_ERR_CORRUPT;
+    }
+    const int status = read_section(db, s, &db->geoid, poll_limit);
+    if (status != LM_OK) {
+        return status;
+    }
+    return lm_geoid_is_sound(&db->geoid) ? LM_OK : LM_ERR_CORRUPT;
+}
+
 static int read_tables(struct lm_db *db, const struct lm_image_header *h, uint32_t poll_limit)
 {
     const uint64_t band_bytes = (uint64_t)db->band_count * sizeof(struct lm_band);
@@ -272,6 +290,9 @@ int lm_db_open(struct lm_db *db, const struct lm_flash *flash, uint32_t poll_lim
     memcpy(db->title, h.title, sizeof h.title);
     db->title[sizeof h.title] = 0;
     int tables = read_tables(db, &h, poll_limit);
+    if (tables == LM_OK) {
+        tables = read_geoid(db, &h, poll_limit);
+    }
     if (tables == LM_OK) {
         tables = find_tiles(db, &h);
     }

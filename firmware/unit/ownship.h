@@ -5,17 +5,22 @@
 #include "lm/db.h"
 #include "lm/nav.h"
 
+static inline struct lm_position lm_ownship_position(const struct lm_ownship *own)
+{
+    return (struct lm_position){own->latitude, own->longitude};
+}
+
 /* Height above mean sea level, which the map's elevations refer to. Satellite navigation gives the
  * height above the ellipsoid. */
 static inline int32_t lm_antenna_height_m_q6(const struct lm_ownship *own, const struct lm_db *db)
 {
     const bool is_ellipsoidal = own->height_source == LM_BUS_ELLIPSOID_HEIGHT;
-    return own->height_m_q6 - (is_ellipsoidal ? db->geoid_m_q6 : 0);
-}
-
-static inline struct lm_position lm_ownship_position(const struct lm_ownship *own)
-{
-    return (struct lm_position){own->latitude, own->longitude};
+    if (!is_ellipsoidal) {
+        return own->height_m_q6;
+    }
+    return own->height_m_q6 - (db->geoid.rows > 0
+                                   ? lm_geoid_height_m_q6(&db->geoid, lm_ownship_position(own))
+                                   : db->geoid_m_q6);
 }
 
 /* True if position and heading are good or stale. */

@@ -314,6 +314,29 @@ static int read_signatures_head(struct image *image, struct image_findings *f)
     return 0;
 }
 
+static int read_geoid(struct image *image, struct image_findings *f)
+{
+    const struct lm_image_section *s = image->sections[LM_IMAGE_GEOID];
+    struct lm_geoid *g = &image->db.geoid;
+    if (!s) {
+        return 0;
+    }
+    if (s->bytes != sizeof *g) {
+        image_find(f, s->offset, "section GEOID has not its %zu bytes", sizeof *g);
+        return -1;
+    }
+    memcpy(g, image->bytes + s->offset, sizeof *g);
+    if (!lm_geoid_is_sound(g)) {
+        image_find(f, s->offset, "section GEOID: a number of the grid is out of its range");
+        return -1;
+    }
+    if (!db_is_zero(g->reserved0, sizeof g->reserved0) ||
+        !db_is_zero(g->reserved1, sizeof g->reserved1)) {
+        image_find(f, s->offset, "unused bytes of section GEOID are not zero");
+    }
+    return 0;
+}
+
 int image_read_tables(struct image *image, struct image_findings *findings)
 {
     if (image->size_bytes < sizeof image->header) {
@@ -325,6 +348,9 @@ int image_read_tables(struct image *image, struct image_findings *findings)
         return -1;
     }
     fill_db(image);
+    if (read_geoid(image, findings) != 0) {
+        return -1;
+    }
     return read_targets_head(image, findings) == 0 && read_signatures_head(image, findings) == 0
                ? check_bands(image, findings)
                : -1;

@@ -285,6 +285,9 @@ static int finish(struct image_writer *w, const char *manifest)
         result = put_extra(w, LM_IMAGE_SIGNATURES, &w->signatures, stream, &end);
     }
     if (result == 0) {
+        result = put_extra(w, LM_IMAGE_GEOID, &w->geoid, stream, &end);
+    }
+    if (result == 0) {
         result = put_extra(w, LM_IMAGE_DETAIL, &w->detail, stream, &end);
     }
     if (fclose(stream) != 0) {

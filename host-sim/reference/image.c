@@ -11,7 +11,8 @@
 #include <string.h>
 
 enum { TILE_LOG2 = 6, POST_SHIFT_MAX = 4 };
-enum { SECTION_CLASSES = 1, SECTION_BANDS, SECTION_DIRECTORY, SECTION_TILES };
+enum { SECTION_CLASSES = 1, SECTION_BANDS, SECTION_DIRECTORY, SECTION_TILES, SECTION_GEOID = 8 };
+enum { GEOID_BYTES = 2240, GEOID_SIDE = 33 };
 enum verdict { UNKNOWN = 0, GOOD, BAD };
 
 enum { HEADER_BYTES = 1024, HEADER_CRC_AT = 1020, TOP_AT = 60, SECTIONS_MAX = 32 };
@@ -148,9 +149,48 @@ static int find_sections(struct ref_db *db, const char *name)
     return 0;
 }
 
+static int find_geoid(struct ref_db *db, const char *name)
+{
+    if (section_bytes(db, SECTION_GEOID) == 0) {
+        return 0;
+    }
+    db->geoid = find_section(db, SECTION_GEOID, GEOID_BYTES);
+    const uint8_t *g = db->geoid;
+    const bool is_sound = g && has_good_section_crc(db, SECTION_GEOID, g, GEOID_BYTES) &&
+                          g[8] >= 16 && g[8] <= 27 && g[9] >= 16 && g[9] <= 27 && g[10] >= 2 &&
+                          g[10] <= GEOID_SIDE && g[11] >= 2 && g[11] <= GEOID_SIDE;
+    return is_sound ? 0 : hs_error(name, rebuild, "the section GEOID does not hold");
+}
+
+/* Steps from the first node to a place that lies so many degrees from it, kept within the nodes. */
+static double steps(double degrees, unsigned shift, unsigned nodes)
+{
+    return fmin(fmax(degrees / ldexp(360, (int)shift - 32), 0), nodes - 1);
+}
+
+double ref_db_geoid_m(const struct ref_db *db, struct ref_place place)
+{
+    const uint8_t *g = db->geoid;
+    if (!g) {
+        return db->geoid_m;
+    }
+    const double turn = 360 / 4294967296.0, width = ldexp(360, g[9] - 32) * (g[11] - 1);
+    const double middle = (int32_t)get_u32(g + 4) * turn + width / 2;
+    const double v = steps(place.latitude_deg - (int32_t)get_u32(g) * turn, g[8], g[10]);
+    const double u = steps(remainder(place.longitude_deg - middle, 360) + width / 2, g[9], g[11]);
+    const double row = fmin(floor(v), g[10] - 2), column = fmin(floor(u), g[11] - 2);
+    double sum = 0;
+    for (int i = 0; i < 4; i++) {
+        const uint8_t *at = g + 16 + 2 * (((int)row + i / 2) * GEOID_SIDE + (int)column + i % 2);
+        const double a = i % 2 ? u - column : column + 1 - u, b = i / 2 ? v - row : row + 1 - v;
+        sum += a * b * (int16_t)(at[0] | at[1] << 8) / 64;
+    }
+    return sum;
+}
+
 static int open_bytes(struct ref_db *db, const char *name)
 {
-    if (read_header(db, name) == 0 && find_sections(db, name) == 0) {
+    if (read_header(db, name) == 0 && find_sections(db, name) == 0 && find_geoid(db, name) == 0) {
         db->verdicts = calloc((size_t)db->entry_count + 1, 1);
         if (db->verdicts != NULL) {
             return 0;

@@ -49,6 +49,10 @@ static void use(const struct lm_db *db, struct fuzz_supply *s)
     FUZZ_ASSERT(cache && line && pool);
     const struct lm_position there = {fuzz_u32(s), fuzz_u32(s)};
     const struct lm_position centre = {db->centre_latitude, db->centre_longitude};
+    if (db->geoid.rows > 0) {
+        const int32_t height_m_q6 = lm_geoid_height_m_q6(&db->geoid, there);
+        FUZZ_ASSERT(height_m_q6 >= INT16_MIN && height_m_q6 <= INT16_MAX);
+    }
     if (lm_tile_cache_init(cache, db, pool, SLOTS * sizeof(struct lm_tile), POLLS) == LM_OK) {
         look_at_bands(cache);
         for (uint32_t cell_mm = 500; cell_mm < 100000000; cell_mm *= 40) {

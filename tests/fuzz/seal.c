@@ -13,6 +13,7 @@ enum {
     BANDS,
     DIRECTORY,
     TILES,
+    GEOID = 8,
     ENTRIES_MAX = 4096
 };
 
@@ -53,7 +54,7 @@ static void seal_section(uint8_t *image, size_t size, uint8_t *entry, unsigned p
         seal_directory(image + offset, bytes);
     } else if (type == TILES && parts & SEAL_RECORDS) {
         seal_records(image + offset, bytes);
-    } else if ((type == CLASSES || type == BANDS) && parts & SEAL_TABLES) {
+    } else if ((type == CLASSES || type == BANDS || type == GEOID) && parts & SEAL_TABLES) {
         const uint32_t crc = fx_crc32c(0, image + offset, bytes);
         memcpy(entry + 4, &crc, 4);
     }

@@ -738,6 +738,58 @@ def out_of_range():
     return db(*["bright.tif" if word == "image.tif" else word for word in SEGMENT], "--out", "bright-classes.tif")
 
 
+# ---- The geoid of an image.
+
+def geoid_of(path):
+    done = db("inspect", path)
+    return float(re.search(r"geoid +([0-9.-]+) m", done.out).group(1)), "geoid grid" in done.out
+
+
+@row("no word of the geoid", "build", "done")
+def no_geoid():
+    done = db(*BUILD_TERRAIN, "--terrain", "dem.tif")
+    assert "geoid: 0 m above WGS-84 everywhere (assumed" in done.out and geoid_of("terrain.lmdb") == (0, False), done.out
+    return done
+
+
+@row("`--geoid-grid egm96`", "build", "done")
+def geoid_of_proj():
+    done = db(*BUILD_TERRAIN, "--terrain", "dem.tif", "--geoid-grid", "egm96")
+    height, has_grid = geoid_of("terrain.lmdb")
+    assert has_grid and abs(height - undulation()) < 0.1, (height, undulation())
+    assert db("verify", "terrain.lmdb").code == 0
+    return done
+
+
+def geoid_raster(path, plane, **more):
+    return raster(path, [plane], at=(6, 46), step=0.25, system="EPSG:4326", **more)
+
+
+@row("`--geoid-grid` with a raster", "build", "done")
+def geoid_of_a_raster():
+    geoid_raster("geoid.tif", numpy.full((20, 20), 45.5, numpy.float32))
+    done = db(*BUILD_TERRAIN, "--terrain", "dem.tif", "--geoid-grid", "geoid.tif")
+    assert done.code == 0 and geoid_of("terrain.lmdb") == (45.5, True), done.err
+    return done
+
+
+@row("`--geoid-grid` that does not cover the image", "build", "refused")
+def geoid_elsewhere():
+    raster("elsewhere.tif", [numpy.full((4, 4), 45.5, numpy.float32)], at=(20, 10), step=0.25, system="EPSG:4326")
+    return db(*BUILD_TERRAIN, "--terrain", "dem.tif", "--geoid-grid", "elsewhere.tif")
+
+
+@row("elevations as `--geoid-grid`", "build", "refused")
+def geoid_of_elevations():
+    geoid_raster("high-geoid.tif", numpy.full((20, 20), 500, numpy.float32))
+    return db(*BUILD_TERRAIN, "--terrain", "dem.tif", "--geoid-grid", "high-geoid.tif")
+
+
+@row("`--geoid` beside `--geoid-grid`", "build", "refused")
+def two_geoids():
+    return db(*BUILD_TERRAIN, "--terrain", "dem.tif", "--geoid-grid", "egm96", "--geoid", "45")
+
+
 # ---- The table and the run.
 
 def says(run):

@@ -1,5 +1,6 @@
 #include "commands.h"
 
+#include "build/geoid.h"
 #include "build/heights.h"
 #include "build/manifest.h"
 #include "build/pyramid.h"
@@ -18,7 +19,7 @@
 
 struct settings {
     const char *classes, *class_raster, *reflectivity, *heights, *targets, *detail;
-    const char *map, *unknown_codes, *terrain_unit, *terrain_datum;
+    const char *map, *unknown_codes, *terrain_unit, *terrain_datum, *geoid_grid;
     struct db_list terrain;
     double cell_m;
     long shift0, seed;
@@ -116,7 +117,9 @@ static bool read_settings(struct settings *s, int argc, char **argv, int *exit_c
                "class of steep ground outside the class raster; left out: none"),
         OPTION("steep-degrees", DB_REAL, steep_degrees, 1, 89, "DEGREES", "what counts as steep"),
         OPTION("geoid", DB_REAL, geoid_m, -200, 200, "METRES",
-               "height of mean sea level above the WGS-84 ellipsoid here"),
+               "height of mean sea level above the WGS-84 ellipsoid, everywhere in the image"),
+        OPTION("geoid-grid", DB_INPUT, geoid_grid, 0, 0, "egm96|FILE",
+               "its height at each place instead: egm96, which PROJ has, or a raster of metres"),
         OPTION("seed", DB_INTEGER, seed, 0, 4294967295.0, "N", "of the reflectivity's random part"),
     };
     return db_options_read(&usage, options, sizeof options / sizeof options[0], argc, argv,
@@ -173,6 +176,9 @@ static int check_settings(struct settings *s)
     }
     if (s->unknown_codes && !s->map) {
         return usage_error("--unknown-codes", "needs --map");
+    }
+    if (s->geoid_grid && s->geoid_m != 0) {
+        return usage_error("--geoid", "cannot be given together with --geoid-grid");
     }
     if (s->terrain_datum && !is_datum(s->terrain_datum)) {
         return usage_error("--terrain-datum", "must be msl, egm96, egm2008 or ellipsoid");
@@ -402,6 +408,39 @@ static void set_laws(struct build_context *b)
     }
 }
 
+/* All that the image covers, eastwards from the first part. */
+static struct image_area whole_area(const struct build_context *b)
+{
+    struct image_area all = b->cover.area;
+    for (int i = 0; i < b->terrain.layer_count; i++) {
+        const struct image_area *a = &b->terrain.layers[i].area;
+        if (all.width == 0) {
+            all = *a;
+            continue;
+        }
+        const int64_t west = (int32_t)(a->west - all.west);
+        const int64_t first = west < 0 ? west : 0;
+        const int64_t end = west + a->width > all.width ? west + a->width : all.width;
+        all.south = a->south < all.south ? a->south : all.south;
+        all.north = a->north > all.north ? a->north : all.north;
+        all.west += (uint32_t)first;
+        all.width = end - first > IMAGE_BAM_ROUND ? IMAGE_BAM_ROUND : end - first;
+    }
+    return all;
+}
+
+/* The grid of the geoid into b->geoid, and its height in the middle for the header. */
+static int make_geoid(struct build_context *b, const struct settings *s)
+{
+    const struct image_area area = whole_area(b);
+    if (!s->geoid_grid) {
+        printf("geoid: %g m above WGS-84 everywhere (%s)\n", s->geoid_m,
+               s->geoid_m != 0 ? "as told" : "assumed; --geoid-grid egm96 knows better");
+        return 0;
+    }
+    return build_geoid_make(&b->geoid, &area, s->geoid_grid);
+}
+
 static int open_inputs(struct build_context *b, const struct settings *s)
 {
     if (read_table(b, s) != 0 ||
@@ -415,7 +454,7 @@ static int open_inputs(struct build_context *b, const struct settings *s)
                                                s->trusts_inputs}) != 0) {
         return -1;
     }
-    if (check_overlap(b, s) != 0 || make_plan(b, s) != 0) {
+    if (check_overlap(b, s) != 0 || make_geoid(b, s) != 0 || make_plan(b, s) != 0) {
         return -1;
     }
     set_laws(b);
@@ -509,6 +548,11 @@ static int write_inputs(FILE *out, const struct build_context *b, const struct s
     if (result == 0 && s->detail) {
         result = build_manifest_file(out, "detail", s->detail);
     }
+    if (result == 0 && s->geoid_grid) {
+        result = strcmp(s->geoid_grid, "egm96") == 0
+                     ? fprintf(out, "geoid-grid: egm96\n") < 0
+                     : build_manifest_file(out, "geoid-grid", s->geoid_grid);
+    }
     return result == 0 && s->targets ? write_targets_inputs(out, s->targets, signatures) : result;
 }
 
@@ -542,6 +586,14 @@ static char *make_manifest(const struct build_context *b, const struct settings 
     return text;
 }
 
+static int32_t geoid_q6(const struct build_context *b, const struct settings *s,
+                        const uint32_t centre[2])
+{
+    return b->geoid.rows > 0
+               ? lm_geoid_height_m_q6(&b->geoid, (struct lm_position){centre[0], centre[1]})
+               : (int32_t)lround(s->geoid_m * 64.0);
+}
+
 static void fill_header(struct lm_image_header *h, const struct build_context *b,
                         const struct settings *s, const uint32_t centre[2])
 {
@@ -549,7 +601,7 @@ static void fill_header(struct lm_image_header *h, const struct build_context *b
     const double mean_m =
         n->land_area_m2 > 0 ? n->land_metres_m2 / n->land_area_m2 : s->sea_level_m;
     h->mean_elevation_m_q6 = (int32_t)lround(mean_m * 64.0);
-    h->geoid_m_q6 = (int32_t)lround(s->geoid_m * 64.0);
+    h->geoid_m_q6 = geoid_q6(b, s, centre);
     h->centre_latitude = centre[0];
     h->centre_longitude = centre[1];
     if (s->title) {
@@ -627,6 +679,7 @@ static int write_image(struct build_context *b, const struct settings *s, const 
     w.classes = b->classes;
     w.targets = (struct image_bytes){extras->targets_bytes, extras->targets_size};
     w.signatures = (struct image_bytes){extras->signatures_bytes, extras->signatures_size};
+    w.geoid = (struct image_bytes){b->geoid.rows > 0 ? &b->geoid : NULL, sizeof b->geoid};
     w.detail = (struct image_bytes){b->detail.section_bytes ? b->detail.section : NULL,
                                     b->detail.section_bytes};
     char *whole = NULL;

@@ -28,6 +28,11 @@ static void print_header(const struct image *image)
            image_longitude_degrees(h->centre_longitude));
     printf("mean elevation  %.1f m above mean sea level\n", h->mean_elevation_m_q6 / 64.0);
     printf("geoid           %.1f m above WGS-84\n", h->geoid_m_q6 / 64.0);
+    if (image->db.geoid.rows > 0) {
+        const struct lm_geoid *g = &image->db.geoid;
+        printf("geoid grid      %u x %u nodes, %.3f x %.3f degrees apart\n", g->rows, g->columns,
+               ldexp(360, g->latitude_shift - 32), ldexp(360, g->longitude_shift - 32));
+    }
     printf("finest cell     %.3f m (shift0 %u)\n", ldexp(IMAGE_METRES_PER_BAM, h->shift0),
            h->shift0);
     printf("\nsection     offset         bytes  crc\n");

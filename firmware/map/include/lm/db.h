@@ -40,6 +40,7 @@
 
 #include "fx/types.h"
 #include "lm/class_kind.h"
+#include "lm/geoid.h"
 #include "lm/port.h"
 #include "lm/tile_point.h"
 
@@ -157,6 +158,7 @@ struct lm_db {
     uint64_t signatures_offset, chips_offset;
     int32_t mean_elevation_m_q6; /* of the land in the image; within 2^20 */
     int32_t geoid_m_q6; /* mean sea level above the ellipsoid, in the image's area; within 2^20 */
+    struct lm_geoid geoid; /* the same at each place; rows 0: geoid_m_q6 everywhere */
     fx_bam_t centre_latitude, centre_longitude;
     char title[33]; /* the builder's; ends in a zero byte */
     struct lm_classes classes;

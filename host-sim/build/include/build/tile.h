@@ -48,6 +48,7 @@ struct build_context {
     struct build_counts counts;
     struct build_towns towns;
     struct build_facing facing;
+    struct lm_geoid geoid; /* rows 0: none */
 };
 
 enum { BUILD_HEIGHT_MAX_DM = 10000 }; /* 1,000 m: higher things are cut to it, and counted */

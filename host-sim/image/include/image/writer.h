@@ -31,7 +31,7 @@ struct image_writer {
     uint32_t *entry_of;                     /* and of each record its entry; owned */
     struct image_detail_place *details;     /* and of each entry, where its detail lies; owned */
     struct image_bytes targets, signatures; /* the sections; data NULL for an image without */
-    struct image_bytes detail;              /* the same */
+    struct image_bytes geoid, detail;       /* the same */
     uint32_t tiles_crc;
     struct image_sha256 tiles_sha256;
 };

@@ -105,6 +105,7 @@ struct ref_db {
     uint64_t tiles_bytes; /* of `records` */
     uint32_t band_count, entry_count, record_count, level_count, shift0;
     double mean_elevation_m, geoid_m;
+    const uint8_t *geoid; /* section GEOID, or NULL */
     struct ref_place centre;
     uint8_t *verdicts; /* owned: by entry, whether its record's checksum was found good */
 };
@@ -117,6 +118,9 @@ int ref_db_open(struct ref_db *db, const char *path);
 int ref_db_open_memory(struct ref_db *db, const void *bytes, size_t size, const char *name);
 
 void ref_db_close(struct ref_db *db);
+
+/* Height of mean sea level above the ellipsoid: of the section GEOID, or else of the header. */
+double ref_db_geoid_m(const struct ref_db *db, struct ref_place place);
 
 /* Height of a cell along the meridian, and the level to read for range cells of `cell_m`: the
  * largest cell not longer than 9/8 of that. Assumed: level 0 when every cell is longer, and the
