@@ -5,6 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 #include <strings.h>
+#include <sys/stat.h>
 
 static bool ends_in(const char *path, const char *ending)
 {
@@ -39,4 +40,10 @@ bool osm_room(void **array, size_t *capacity, size_t count, size_t size)
     *array = moved;
     *capacity = larger;
     return true;
+}
+
+uint64_t osm_bytes(FILE *file)
+{
+    struct stat status;
+    return fstat(fileno(file), &status) == 0 && status.st_size > 0 ? (uint64_t)status.st_size : 1;
 }

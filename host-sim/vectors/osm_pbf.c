@@ -1,6 +1,7 @@
 /* Protocol buffers of OpenStreetMap, after the format's description (wiki.openstreetmap.org, "PBF
  * Format"). Nothing in the file is believed. */
 #include "hs/error.h"
+#include "hs/progress.h"
 #include "osm_reading.h"
 
 #include <errno.h>
@@ -559,9 +560,13 @@ static int read_blobs(struct pbf *p)
 {
     int result = 0;
     bool is_first = true;
+    struct hs_progress bar;
+    hs_progress_begin(&bar, "reading", osm_bytes(p->file));
     while (read_blob(p, &result)) {
         is_first = false;
+        hs_progress_update(&bar, p->offset);
     }
+    hs_progress_end(&bar);
     if (p->fault) {
         return hs_error(p->path, "get it again, or mend it with osmium",
                         "the block at byte %llu %s", (unsigned long long)p->offset, p->fault);

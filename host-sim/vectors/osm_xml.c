@@ -1,5 +1,6 @@
 /* OpenStreetMap as XML, by expat. */
 #include "hs/error.h"
+#include "hs/progress.h"
 #include "hs/text_file.h"
 #include "osm_reading.h"
 
@@ -203,10 +204,14 @@ static void XMLCALL on_end(void *context, const char *name)
 static int read_chunks(struct xml *x, FILE *file)
 {
     size_t got = 1;
+    uint64_t done = 0;
+    struct hs_progress bar;
+    hs_progress_begin(&bar, "reading", osm_bytes(file));
     while (got > 0 && x->result == 0) {
         void *buffer = XML_GetBuffer(x->parser, CHUNK_BYTES);
         if (!buffer) {
-            return hs_error(x->path, NULL, "out of memory");
+            fail(x, "out of memory");
+            break;
         }
         got = fread(buffer, 1, CHUNK_BYTES, file);
         const enum XML_Status status = XML_ParseBuffer(x->parser, (int)got, got == 0);
@@ -214,7 +219,10 @@ static int read_chunks(struct xml *x, FILE *file)
             x->result = -1;
             x->fault = XML_ErrorString(XML_GetErrorCode(x->parser));
         }
+        done += got;
+        hs_progress_update(&bar, done);
     }
+    hs_progress_end(&bar);
     if (ferror(file)) {
         return hs_error(x->path, NULL, "cannot be read: %s", strerror(errno));
     }

@@ -7,6 +7,7 @@
 #include "check.h"
 #include "gis/code_map.h"
 #include "scene.h"
+#include "support.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -180,6 +181,40 @@ TEST(values_that_are_no_codes_are_refused)
     write_codes(GDT_Int16, negative_value);
     assert_int_equal(run_build(whole_map, "--unknown-codes water"), 1);
     assert_true(scene_log_holds("has 1 pixels below 0 or above 65535"));
+}
+
+/* GDAL reads the raster: whatever is wrong with it, the program ends by itself within its limits.
+ */
+TEST(a_damaged_land_cover_ends_in_an_error_or_an_image)
+{
+    static uint8_t bytes[1 << 16];
+    write_codes(GDT_UInt16, code_value);
+    scene_text("codes.map", whole_map);
+    FILE *file = fopen(scene_path("codes.tif"), "rb");
+    assert_non_null(file);
+    const size_t size = fread(bytes, 1, sizeof bytes, file);
+    fclose(file);
+    for (unsigned seed = 1; seed <= 40; seed++) {
+        unsigned random = seed * 2654435761u;
+        file = fopen(scene_path("damaged.tif"), "wb");
+        assert_int_equal(fwrite(bytes, 1, size, file), size);
+        for (int k = 0; k < 6; k++) {
+            random = random * 1664525u + 1013904223u;
+            /* Head and directory stand at both ends. */
+            const long at = (long)((random >> 8) % 300);
+            fseek(file, k % 2 ? at : (long)size - 1 - at, SEEK_SET);
+            fputc((int)(random >> 4 & 255), file);
+        }
+        fclose(file);
+        const int status = support_run(
+            "(ulimit -v 4000000; timeout -k 1 20 %s/bin/landmass-db build --classes %s "
+            "--class-raster %s --map %s --terrain %s --land-class soil --unknown-codes none "
+            "--out %s) >%s/log 2>&1",
+            support_build_dir(), scene_path(SCENE_CLASSES), scene_path("damaged.tif"),
+            scene_path("codes.map"), scene_path("terrain.tif"), scene_path("damaged.lmdb"),
+            scene_folder());
+        assert_true(status == 0 || status == 1);
+    }
 }
 
 TEST(a_map_that_is_none_is_refused_with_its_line)
