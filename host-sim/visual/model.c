@@ -79,9 +79,10 @@ static bool take(struct taking *t, void *to, uint64_t bytes)
     return true;
 }
 
-static bool take_embedded(struct visual_model *m, struct taking *t)
+static bool take_embedded(struct visual_model *m, struct taking *t, const char *path)
 {
     static uint32_t number;
+    const char *slash = strrchr(path, '/');
     m->embedded_names = calloc(m->embedded_count + 1, sizeof *m->embedded_names);
     m->embedded = malloc(t->left + 1);
     uint8_t *to = m->embedded;
@@ -93,7 +94,8 @@ static bool take_embedded(struct visual_model *m, struct taking *t)
             return false;
         }
         char *name = m->embedded_names[m->embedded_count++];
-        snprintf(name, VISUAL_NAME_SIZE, "/vsimem/landmass-%u", number++);
+        snprintf(name, VISUAL_NAME_SIZE, "/vsimem/%u-%.32s/texture-%u", number++,
+                 slash ? slash + 1 : path, i);
         VSIFCloseL(VSIFileFromMemBuffer(name, to, bytes, 0));
         to += bytes;
     }
@@ -115,7 +117,7 @@ static void name_embedded(struct visual_model *m)
     }
 }
 
-static bool take_model(struct visual_model *m, struct taking *t)
+static bool take_model(struct visual_model *m, struct taking *t, const char *path)
 {
     struct reader_head head;
     if (!take(t, &head, sizeof head) || head.triangle_count > VISUAL_TRIANGLES_MAX ||
@@ -132,7 +134,7 @@ static bool take_model(struct visual_model *m, struct taking *t)
     if (!m->triangles || !m->materials ||
         !take(t, m->materials, (uint64_t)m->material_count * sizeof *m->materials) ||
         !take(t, m->triangles, (uint64_t)m->triangle_count * sizeof *m->triangles) ||
-        !take_embedded(m, t)) {
+        !take_embedded(m, t, path)) {
         return false;
     }
     for (uint32_t i = 0; i < m->triangle_count; i++) {
@@ -156,7 +158,7 @@ static int take_file(struct visual_model *m, int fd, const char *name)
         return hs_error(name, "reduce the model", "out of memory");
     }
     struct taking t = {bytes, (uint64_t)status.st_size};
-    const bool is_taken = take_model(m, &t);
+    const bool is_taken = take_model(m, &t, name);
     munmap(bytes, (size_t)status.st_size);
     return is_taken ? 0 : hs_error(name, "reduce the model", "out of memory for its triangles");
 }

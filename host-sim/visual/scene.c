@@ -10,10 +10,14 @@
 #include <stdlib.h>
 #include <string.h>
 
-static const char *base_name(const char *path)
+/* File and folder of a path: files of one name in two folders are two pictures. */
+static const char *short_name(const char *path)
 {
     const char *slash = strrchr(path, '/');
-    return slash ? slash + 1 : path;
+    while (slash && slash > path && slash[-1] != '/') {
+        slash--;
+    }
+    return slash ? slash : path;
 }
 
 static void load_skin(struct visual_scene *s, const struct visual_material *m, const char *label)
@@ -33,7 +37,7 @@ static void load_skin(struct visual_scene *s, const struct visual_material *m, c
         }
     }
     if (skin->texture.width > 0) {
-        snprintf(name, sizeof name, "%.*s", VISUAL_PATCH_NAME_SIZE - 1, base_name(m->texture));
+        snprintf(name, sizeof name, "%.*s", VISUAL_PATCH_NAME_SIZE - 1, short_name(m->texture));
     } else {
         snprintf(name, sizeof name, "%s%s%s", label, label[0] ? " " : "", m->name);
     }

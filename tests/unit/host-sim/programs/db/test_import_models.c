@@ -170,8 +170,8 @@ TEST(a_mask_names_the_pictures_and_goes_with_its_file)
                                  fixture_path("house.obj"), HOUSE_PATHS),
                      0);
     for (int i = 0; i < 2; i++) {
-        assert_int_equal(support_run("grep -q '<Category>%s</Category>' %s",
-                                     i ? "roof.png" : "lawn", fixture_path("mask.tif.aux.xml")),
+        assert_int_equal(support_run("grep -q '%s</Category>' %s", i ? "/roof.png" : ">lawn",
+                                     fixture_path("mask.tif.aux.xml")),
                          0);
     }
 }
@@ -229,6 +229,64 @@ TEST(gltf_has_its_own_axes_and_linear_colours)
     free(red);
     free(blue);
     free(top);
+}
+
+/* A square of 16 m whose texture is part of the file; its v runs downwards. */
+static void write_gltf_with_texture(void)
+{
+    static const float floats[20] = {0, 2,   -16, 0, 2, 0, 16, 2, 0, 16,
+                                     2, -16, 0,   0, 0, 1, 1,  1, 1, 0};
+    static const uint16_t indices[6] = {0, 1, 2, 0, 2, 3};
+    uint8_t bytes[sizeof floats + sizeof indices], png[4096];
+    write_texture("inside.png");
+    FILE *in = fopen(fixture_path("inside.png"), "rb");
+    const size_t length = fread(png, 1, sizeof png, in);
+    fclose(in);
+    unlink(fixture_path("inside.png"));
+    memcpy(bytes, floats, sizeof floats);
+    memcpy(bytes + sizeof floats, indices, sizeof indices);
+    char *mesh = CPLBase64Encode(sizeof bytes, bytes), *image = CPLBase64Encode((int)length, png);
+    FILE *f = fopen(fixture_path("inside.gltf"), "w");
+    fprintf(
+        f,
+        "{\"asset\":{\"version\":\"2.0\"},\"scene\":0,\"scenes\":[{\"nodes\":[0]}],\"nodes\":"
+        "[{\"mesh\":0}],\"meshes\":[{\"primitives\":[{\"attributes\":{\"POSITION\":0,"
+        "\"TEXCOORD_0\":1},\"indices\":2,\"material\":0}]}],\"materials\":[{"
+        "\"pbrMetallicRoughness\":{\"baseColorTexture\":{\"index\":0}}}],\"textures\":[{"
+        "\"source\":0}],\"images\":[{\"uri\":\"data:image/png;base64,%s\"}],\"buffers\":[{"
+        "\"byteLength\":%zu,\"uri\":\"data:application/octet-stream;base64,%s\"}],"
+        "\"bufferViews\":[{\"buffer\":0,\"byteOffset\":0,\"byteLength\":48},{\"buffer\":0,"
+        "\"byteOffset\":48,\"byteLength\":32},{\"buffer\":0,\"byteOffset\":80,\"byteLength\":12}"
+        "],\"accessors\":[{\"bufferView\":0,\"componentType\":5126,\"count\":4,\"type\":"
+        "\"VEC3\",\"min\":[0,2,-16],\"max\":[16,2,0]},{\"bufferView\":1,\"componentType\":5126,"
+        "\"count\":4,\"type\":\"VEC2\"},{\"bufferView\":2,\"componentType\":5123,\"count\":6,"
+        "\"type\":\"SCALAR\"}]}",
+        image, sizeof bytes, mesh);
+    fclose(f);
+    CPLFree(mesh);
+    CPLFree(image);
+}
+
+TEST(a_texture_inside_the_file_is_found_and_named)
+{
+    struct db_grid grid;
+    write_gltf_with_texture();
+    assert_int_equal(fixture_run(NULL, 0,
+                                 "import --model %s --at 1,1 --cell 1 --out-image %s --out-mask %s",
+                                 fixture_path("inside.gltf"), fixture_path("inside.tif"),
+                                 fixture_path("insidem.tif")),
+                     0);
+    for (int b = 0; b < 3; b++) {
+        float *plane = read_band("inside.tif", b, &grid);
+        for (int i = 0; i < 256; i++) {
+            const int part = i % 16 >= 8 ? 1 : i / 16 < 8 ? 0 : 2;
+            assert_int_equal((int)plane[i], b == part ? 200 : 10);
+        }
+        free(plane);
+    }
+    assert_int_equal(support_run("grep -q 'inside.gltf/texture-0</Category>' %s",
+                                 fixture_path("insidem.tif.aux.xml")),
+                     0);
 }
 
 /* A triangle 9 m eastwards and 18 m northwards, 3 m up, in centimetres. */
