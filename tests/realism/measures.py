@@ -456,7 +456,7 @@ def border_steps(scenes, real):
     """
     found = []
     for cell in (5, 40):
-        picture = scenes.patch("builtin", scenes.place("river-valley"), cell)
+        picture = scenes.patch("builtin", scenes.place("river-valley"), cell, plan=1)  # borders are the map's
         bare = (picture.height_m == 0) & (picture.level_db > -30)
         found.append(step_ratio(picture.level_db, picture.is_class("soil") & bare, picture.is_class("vegetation") & bare))
     measured = quoted_orihuela(scenes, real, lambda o: "Sentinel-1 {:.1f}".format(
@@ -502,7 +502,7 @@ def our_orihuela(scenes, look=LOOK_SENTINEL):
     for i in (-1, 0, 1):
         for k in (-1, 0, 1):
             centre = moved(moved(MIDDLE, look, i * 2560), look + 90, k * 2560)
-            picture = scenes.patch("orihuela", centre, 10, look, range_m=20000, height_m=20000)
+            picture = scenes.patch("orihuela", centre, 10, look, range_m=20000, height_m=20000, plan=1)  # as Sentinel's is
             # Line k is a ray from the antenna: at range S + y it lies x_k (S + y) / S aside.
             y, x = along - i * 2560, across - k * 2560
             level, code = picture.every_line["level"] / 256, picture.every_line["cell"]
@@ -873,7 +873,7 @@ def shadow_overlap(scenes, range_m, look=200):
     """Intersection over union of the shadows of a patch 5 km wide with those of the full terrain along its true rays."""
     antenna = tuple(float(v) for v in direct(VALLEYS, look + 180, range_m))
     height_m = 900 + range_m / 8
-    picture = scenes.patch("hawaii", VALLEYS, 20, look, range_m=range_m, height_m=height_m)
+    picture = scenes.patch("hawaii", VALLEYS, 20, look, range_m=range_m, height_m=height_m, plan=1)
     s = range_m + (np.arange(CELLS) + 0.5 - CELLS / 2) * 20
     half = np.degrees(np.arctan(2600 / range_m))
     # The direction of the patch at the antenna is that at its middle less the turn of the meridian.
@@ -923,7 +923,7 @@ def shadow_length(scenes, real):
         # The patch's middle is half a shadow behind the object; it looks north.
         length = tall * 20000 / 6000
         centre = place[0], place[1] + length / 2
-        picture = scenes.patch("yard", utm_degrees(centre), cell, range_m=20000, height_m=6000)
+        picture = scenes.patch("yard", utm_degrees(centre), cell, range_m=20000, height_m=6000, plan=1)
         s = 20000 + (np.arange(CELLS) + 0.5 - CELLS / 2) * cell
         lines = slice(CELLS // 2 - 1, CELLS // 2 + 2)
         smooth = db(picture.power[lines].mean(axis=0))

@@ -59,6 +59,9 @@ static bool take(struct pass *restrict p, uint32_t group, int32_t *restrict away
     for (uint32_t k = 0; k < GROUP; k++) {
         least = fx_min_i32(least, away_16ths[k]);
     }
+    if (least == NOWHERE) {
+        return false;
+    }
     const int32_t base = least & ~15;
     p->first = (int32_t)group + (least >> 4);
     for (uint32_t k = 0; k < GROUP; k++) {
@@ -68,7 +71,7 @@ static bool take(struct pass *restrict p, uint32_t group, int32_t *restrict away
         most = fx_max_i32(most, place <= REACH_16THS ? place : 0);
     }
     p->most_16ths = most;
-    return least != NOWHERE;
+    return true;
 }
 
 /* Share of a power, as a level: `gone_16ths` of it are not in it; none of it for other numbers. */
