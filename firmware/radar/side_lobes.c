@@ -143,12 +143,14 @@ void lm_side_lobes_find(struct lm_side_lobes *s, uint32_t line, const int32_t *l
     s->line[line % LM_SIDE_LOBES_LINES].count = 0;
     s->found = line + 1;
     lm_k_highest(level_db_q8, highest_db_q8, cells);
-    const uint32_t blocks = (cells + LM_K_HIGHEST_CELLS - 1) / LM_K_HIGHEST_CELLS;
-    for (uint32_t n = 0; n < blocks; n++) {
-        if (highest_db_q8[n] >= least) {
-            const uint32_t first = n * LM_K_HIGHEST_CELLS;
-            const uint32_t end = fx_min_u32(first + LM_K_HIGHEST_CELLS, cells);
-            least = search(s, (struct stretch){line, first, end, cells}, level_db_q8, least, seed);
+    for (uint32_t first = 0; first < cells; first += 2 * LM_K_HIGHEST_CELLS) {
+        const int32_t *const of_two = &highest_db_q8[first / LM_K_HIGHEST_CELLS];
+        if (fx_max_i32(of_two[0], of_two[1]) >= least) {
+            const uint32_t middle = first + LM_K_HIGHEST_CELLS;
+            const uint32_t from = of_two[0] >= least ? first : middle;
+            const uint32_t end =
+                fx_min_u32(of_two[1] >= least ? middle + LM_K_HIGHEST_CELLS : middle, cells);
+            least = search(s, (struct stretch){line, from, end, cells}, level_db_q8, least, seed);
         }
     }
 }
@@ -183,16 +185,14 @@ static inline void add_along(const struct lm_side_lobes *s, const struct lm_stro
     }
 }
 
-/* Side lobes of line `n` on line `line`. */
-static inline void add_across(const struct lm_side_lobes *s, uint32_t n, uint32_t line,
+/* Side lobes of the points of line `n` on another, `beside` lines on. */
+static inline void add_across(const struct lm_side_lobes *s, uint32_t n, int32_t beside,
                               int32_t *level_db_q8)
 {
     const uint32_t slot = n % LM_SIDE_LOBES_LINES;
-    const struct lm_strong_cell *p = s->line[slot].strong;
-    const struct lm_strong_cell *const end = p + s->line[slot].count;
-    for (; p != end; p++) {
-        add(&level_db_q8[p->cell],
-            p->level_db_q8 + side_of(s, p->right)[(int32_t)line - (int32_t)n]);
+    for (uint32_t k = 0; k < s->line[slot].count; k++) {
+        const struct lm_strong_cell *const p = &s->line[slot].strong[k];
+        add(&level_db_q8[p->cell], p->level_db_q8 + side_of(s, p->right)[beside]);
     }
 }
 
@@ -200,14 +200,15 @@ void lm_side_lobes_add(const struct lm_side_lobes *s, uint32_t line, int32_t *le
                        uint32_t cells)
 {
     const uint32_t slot = line % LM_SIDE_LOBES_LINES;
-    const uint32_t end = fx_min_u32(line + LM_RESPONSE_REACH + 1, s->found);
-    for (uint32_t n = line - fx_min_u32(line, LM_RESPONSE_REACH); n + NEAREST <= line; n++) {
-        add_across(s, n, line, level_db_q8);
+    const int32_t before = (int32_t)fx_min_u32(line, LM_RESPONSE_REACH);
+    const int32_t behind = (int32_t)fx_min_u32(s->found - 1 - line, LM_RESPONSE_REACH);
+    for (int32_t beside = before; beside >= NEAREST; beside--) {
+        add_across(s, line - (uint32_t)beside, beside, level_db_q8);
     }
     for (uint32_t k = 0; k < s->line[slot].count; k++) {
         add_along(s, &s->line[slot].strong[k], level_db_q8, (int32_t)cells);
     }
-    for (uint32_t n = line + NEAREST; n < end; n++) {
-        add_across(s, n, line, level_db_q8);
+    for (int32_t beside = NEAREST; beside <= behind; beside++) {
+        add_across(s, line + (uint32_t)beside, -beside, level_db_q8);
     }
 }

@@ -11,7 +11,8 @@
  *               .
  *
  * Order of the calls: _clear for a patch, _find for each line once it has its noise and speckle,
- * _add for each line once those LM_RESPONSE_REACH lines further on were found. No call fails. */
+ * _add for each line that was found, once those LM_RESPONSE_REACH lines further on were. No call
+ * fails. */
 #ifndef LM_SIDE_LOBES_H
 #define LM_SIDE_LOBES_H
 
