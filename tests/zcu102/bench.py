@@ -17,10 +17,11 @@ import figures  # noqa: E402
 
 LINE_BUDGET_US = 3900  # a line of the fastest sweep, 256 of them in a second
 MIPS = 100
-# As bench.c numbers them: enum lm_sector_mode times enum lm_fov, and the patch behind them.
+# As bench.c numbers them: enum lm_sector_mode times enum lm_fov, and behind them the patches.
 SECTORS = [f"{mode} {field}" for mode in ("GM", "GMT", "SEA") for field in ("NORM", "EXP", "DBS1", "DBS2")]
-MODES = dict(enumerate(SECTORS + ["SAR patch"]))
+MODES = dict(enumerate(SECTORS + ["SAR patch", "SAR patch finer than the map"]))
 PATCH = len(SECTORS)
+FINER = PATCH + 1
 PATCH_CELLS = 256
 
 
@@ -75,11 +76,13 @@ def a_line(stages, names):
 
 def print_goals(modes, first_picture_us):
     """The goals of docs/zcu102.md."""
-    pixel, paint_pixel = (each / PATCH_CELLS for each in a_line(modes[PATCH], PATCH_STAGES))
     line, paint = a_line(modes[0], SECTOR_STAGES)
     print("\nagainst the goals")
-    print(f"  SAR patch, every effect: {pixel:6.1f} instructions a pixel (goal 45), and "
-          f"{paint_pixel:.1f} for painting it on this glass")
+    for patch, what, goal in ((PATCH, "SAR patch:               ", 45), (FINER, "SAR patch, finer than map:", 80)):
+        if patch in modes:
+            pixel, paint_pixel = (each / PATCH_CELLS for each in a_line(modes[patch], PATCH_STAGES))
+            print(f"  {what}{pixel:6.1f} instructions a pixel (goal {goal}), and "
+                  f"{paint_pixel:.1f} for painting it on this glass")
     print(f"  GM line of 256 cells:    {line:6,.0f} instructions (goal 20,000), and {paint:,.0f} for painting it")
     print(f"  reset to first picture:  {first_picture_us / 1000:6.1f} ms of the guest's time (goal 1,000)")
 
@@ -89,7 +92,7 @@ def record(modes, first_picture_us):
     for mode, stages in sorted(modes.items()):
         if "line" not in stages:
             continue
-        drawn, paint = a_line(stages, PATCH_STAGES if mode == PATCH else SECTOR_STAGES)
+        drawn, paint = a_line(stages, PATCH_STAGES if mode >= PATCH else SECTOR_STAGES)
         rows += [(drawn, "instructions", f"{MODES[mode]}, a line"),
                  (paint, "instructions", f"{MODES[mode]}, painting a line"),
                  (stages["step"][2], "instructions", f"{MODES[mode]}, worst step"),

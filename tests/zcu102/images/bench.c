@@ -17,7 +17,8 @@ void instrument_nothing(void)
 {
 }
 
-_Static_assert(LM_SECTOR_MODES *LM_FOVS < INSTRUMENT_MODES, "a sum for each mode and the patch");
+_Static_assert(LM_SECTOR_MODES *LM_FOVS + 1 < INSTRUMENT_MODES,
+               "a sum for each mode and both patches");
 
 struct bench {
     struct zcu102 z;
@@ -35,18 +36,21 @@ static void add(struct instrument_sum *sum, uint64_t spent)
     sum->most = spent > sum->most ? (uint32_t)spent : sum->most;
 }
 
-/* A number for what is being drawn: mode and field of the sector, behind them the patch. */
-static uint32_t mode_of(const struct lm_page *page)
+/* A number for what is being drawn: mode and field of the sector, behind them the patch, and the
+ * patch of cells finer than the map. */
+static uint32_t mode_of(const struct lm_unit *unit)
 {
-    return page->picture == LM_PICTURE_PATCH ? LM_SECTOR_MODES * LM_FOVS
-                                             : (uint32_t)page->mode * LM_FOVS + page->fov;
+    const uint32_t patch = LM_SECTOR_MODES * LM_FOVS;
+    return unit->page.picture == LM_PICTURE_PATCH
+               ? patch + unit->picture.sar.blend.is_on
+               : (uint32_t)unit->page.mode * LM_FOVS + unit->page.fov;
 }
 
 static void fly(struct bench *b)
 {
     struct zcu102 *z = &b->z;
     for (z->step_us = 0; z->step_us <= b->handed.header->end_us; z->step_us += ZCU102_STEP_US) {
-        const uint32_t mode = mode_of(&z->unit.page), frames = z->unit.count.frames;
+        const uint32_t mode = mode_of(&z->unit), frames = z->unit.count.frames;
         instrument_set_mode(mode);
         const uint64_t start = instrument_now();
         lm_unit_step(&z->unit, z->step_us);
