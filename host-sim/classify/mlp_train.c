@@ -12,6 +12,7 @@
 #include <string.h>
 
 enum {
+    SETTLING = 2,       /* the first cures, which slow the learning and let the weights settle */
     CLASSES = 256,      /* as many as a target can name */
     SCORE_BATCH = 1024, /* exemplars at a time when only looking */
     EPOCH_LEAST = 512,  /* presentations: a handful of exemplars would change the weights once */
@@ -191,9 +192,10 @@ struct trainer {
     struct db_train_report *report;
     struct presenter presenter;
     struct db_mlp_batch batch;
-    float *inputs;                     /* owned: the batch with its noise */
-    uint8_t *targets;                  /* owned */
-    float *gradient, *velocity, *best; /* owned; laid out as the weights */
+    float *inputs;    /* owned: the batch with its noise */
+    uint8_t *targets; /* owned */
+    /* Owned, laid out as the weights. `mean` is that of the weights over the present epoch. */
+    float *gradient, *velocity, *best, *mean;
     struct hs_rng rng;
     double rate, momentum, noise; /* as they are by now */
     double best_score, best_rms;  /* of the weights in `best` */
@@ -213,6 +215,7 @@ static void trainer_free(struct trainer *t)
     free(t->gradient);
     free(t->velocity);
     free(t->best);
+    free(t->mean);
 }
 
 static int trainer_init(struct trainer *t)
@@ -230,8 +233,9 @@ static int trainer_init(struct trainer *t)
     t->gradient = calloc(size, sizeof *t->gradient);
     t->velocity = calloc(size, sizeof *t->velocity);
     t->best = calloc(size, sizeof *t->best);
+    t->mean = calloc(size, sizeof *t->mean);
     t->report->epochs = calloc((size_t)t->options->epochs, sizeof *t->report->epochs);
-    if (!t->inputs || !t->targets || !t->gradient || !t->velocity || !t->best ||
+    if (!t->inputs || !t->targets || !t->gradient || !t->velocity || !t->best || !t->mean ||
         !t->report->epochs || presenter_init(&t->presenter, t->training) != 0 ||
         batch_alloc(&t->batch, t->net, t->options->batch) != 0) {
         return -1;
@@ -285,9 +289,29 @@ static size_t count_alternations(struct trainer *t)
     return count;
 }
 
+static void add_to_mean(struct trainer *t, size_t count)
+{
+    const size_t size = db_mlp_size(t->net);
+    const float share = 1.0f / (float)count;
+    for (size_t i = 0; i < size; i++) {
+        t->mean[i] += share * (t->net->weights[i] - t->mean[i]);
+    }
+}
+
+/* The weights sway about their goal at a fixed rate, and their mean over an epoch lies nearer to it
+ * (Polyak and Juditsky, SIAM Journal on Control and Optimization 30, 1992, p. 838): it is what is
+ * judged and kept. */
+static void score_epoch(const struct trainer *t, struct db_epoch *epoch)
+{
+    struct db_mlp mean = *t->net;
+    mean.weights = t->mean;
+    epoch->recognition = db_mlp_recognition(&mean, t->training, &epoch->rms);
+    epoch->validation = db_mlp_recognition(&mean, t->validation, NULL);
+}
+
 static void run_epoch(struct trainer *t, struct db_epoch *epoch)
 {
-    size_t alternations = 0;
+    size_t alternations = 0, batches = 0;
     presenter_draw_epoch(&t->presenter, &t->rng);
     for (size_t at = 0; at < t->presenter.count; at += (size_t)t->options->batch) {
         const size_t left = t->presenter.count - at;
@@ -296,10 +320,10 @@ static void run_epoch(struct trainer *t, struct db_epoch *epoch)
         alternations += count_alternations(t);
         db_mlp_backward(t->net, &t->batch, t->gradient);
         change_weights(t);
+        add_to_mean(t, ++batches);
     }
     epoch->alternation = (double)alternations / (double)t->presenter.count;
-    epoch->recognition = db_mlp_recognition(t->net, t->training, &epoch->rms);
-    epoch->validation = db_mlp_recognition(t->net, t->validation, NULL);
+    score_epoch(t, epoch);
 }
 
 static double score_of(const struct db_epoch *epoch)
@@ -314,7 +338,7 @@ static void keep_if_better(struct trainer *t, const struct db_epoch *epoch, int 
         t->best_score = score;
         t->best_rms = epoch->rms;
         t->report->best_epoch = number;
-        memcpy(t->best, t->net->weights, db_mlp_size(t->net) * sizeof *t->best);
+        memcpy(t->best, t->mean, db_mlp_size(t->net) * sizeof *t->best);
     }
 }
 
@@ -366,12 +390,19 @@ static int draw_new_weights(struct trainer *t)
     return 0;
 }
 
+static bool has_goal(const struct trainer *t)
+{
+    return t->report->epochs[t->report->best_epoch - 1].recognition >= t->options->goal;
+}
+
 /* The next cure; returns false when there is none left. */
 static bool act_on_minimum(struct trainer *t, int epoch, double alternation)
 {
     char met[64];
     snprintf(met, sizeof met, "%s (%.0f %% alternating)",
-             alternation < alternating ? "plateau below the goal" : "local minimum",
+             has_goal(t)                 ? "the goal is reached"
+             : alternation < alternating ? "plateau below the goal"
+                                         : "local minimum",
              100 * alternation);
     memset(t->velocity, 0, db_mlp_size(t->net) * sizeof *t->velocity);
     switch (t->actions++) {
@@ -397,11 +428,6 @@ static bool act_on_minimum(struct trainer *t, int epoch, double alternation)
     }
 }
 
-static bool has_goal(const struct trainer *t)
-{
-    return t->report->epochs[t->report->best_epoch - 1].recognition >= t->options->goal;
-}
-
 /* Once the goal is reached, and with validation, a falling error alone is no progress. */
 static bool is_plateau(const struct trainer *t, const struct db_epoch *epoch, int number)
 {
@@ -417,8 +443,9 @@ static bool is_over(struct trainer *t, const struct db_epoch *epoch, int number)
     if (!is_plateau(t, epoch, number)) {
         return false;
     }
-    const bool error_falls = number - t->rms_epoch < t->options->patience;
-    if (has_goal(t)) {
+    const bool error_falls =
+        number - t->rms_epoch < t->options->patience && !isnan(epoch->validation);
+    if (has_goal(t) && t->actions >= SETTLING) {
         t->report->stop = DB_STOP_GOAL;
         return true;
     }

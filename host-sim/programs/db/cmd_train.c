@@ -26,7 +26,7 @@ static const struct db_usage usage = {
         "(--hold-out polygons:0.3): neighbouring pixels are nearly copies of each other, so pixels "
         "held out\n"
         "from polygons that were also trained on flatter the network.\n\n"
-        "Training stops at the recognition goal, at --epochs, or on a plateau; the best weights "
+        "Training stops on a plateau once the goal is reached, or at --epochs; the best weights "
         "met are\n"
         "kept. With the same inputs, options and seed the network file comes out the same, byte "
         "for byte.\n\n"
@@ -52,7 +52,7 @@ static const struct options defaults = {
     .unit = "tanh",
     .context = 1,
     .per_class = 4000,
-    .members = 1,
+    .members = 3,
     .epochs = 300,
     .patience = 15,
     .redraws = 3,
@@ -60,8 +60,8 @@ static const struct options defaults = {
     .seed = 1,
     .rate = 0.1,
     .momentum = 0.9,
-    .noise = 0.02,
-    .goal = 0.95,
+    .noise = 0.005,
+    .goal = 0.99,
 };
 
 static bool read_options(struct options *o, int argc, char **argv, int *exit_code)

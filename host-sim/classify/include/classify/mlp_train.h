@@ -62,10 +62,12 @@ struct db_train_report {
  *
  * Progress is a recognition that rose by 0.2 points, or an error that fell by 1 %, since progress
  * was last made; with validation exemplars only the former. A plateau is `patience` epochs without.
- * Training ends on one if the goal is reached, or if validation stands while the error still falls.
- * Any other is a local minimum, recorded and acted on: the rate is halved, then rate and momentum
- * are lowered, then the noise is doubled, then the weights are drawn anew and all begins again.
- * Training ends on the plateau that finds no redraw left.
+ * Each is recorded and acted on: the rate is halved, then rate and momentum are lowered, then the
+ * noise is doubled, then the weights are drawn anew and all begins again. If the goal is reached
+ * training ends after the second, which let the weights settle; it ends at once if validation
+ * stands while the error still falls, and on the plateau that finds no redraw left.
+ *
+ * What is judged and kept is the mean of the weights over an epoch.
  *
  * The same data, options and seed give the same weights on the same machine. Returns 0, or -1 out
  * of memory with the error reported. `report` is to be freed either way. */
