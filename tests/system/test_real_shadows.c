@@ -248,15 +248,17 @@ static void fill_with_hills(GDALDatasetH d, struct real_place antenna)
 }
 
 /* Cells of 40 m over posts 76 m apart miss crests of the mountains that the viewshed's own 20 m
- * find. With parallel lines the widest two have an overlap of 0.80 and 0.88 over the hills, and of
- * 0.75 and 0.84 over the mountains. */
+ * find: over posts 38 m apart the widest two have 0.948 and 0.930. Lines of sight over the
+ * viewshed's own terrain, asked in the middles of cells of 40 m, have no more than 0.96 and 0.94.
+ * With parallel lines the widest two have an overlap of 0.80 and 0.88 over the hills, and of 0.75
+ * and 0.84 over the mountains. */
 static const struct {
     double range_m, height_m, side_m, least_of_hills, least_of_mountains;
 } views[] = {
     {10000, 2000, 2560, 0.95, 0.95},  {15000, 2500, 5120, 0.95, 0.95},
     {20000, 3000, 5120, 0.95, 0.95},  {30000, 4000, 5120, 0.95, 0.95},
-    {60000, 7000, 5120, 0.95, 0.95},  {20000, 3000, 10240, 0.95, 0.90},
-    {12000, 2500, 10240, 0.95, 0.87},
+    {60000, 7000, 5120, 0.95, 0.95},  {20000, 3000, 10240, 0.95, 0.92},
+    {12000, 2500, 10240, 0.95, 0.90},
 };
 
 TEST(shadows_of_hills_fall_where_gdal_has_them)
@@ -314,13 +316,21 @@ static bool open_mountains(struct world *w, char *terrain_path, size_t size)
     return true;
 }
 
+/* The terrain of a file, its voids filled by GDAL: left as they are, they would be pits down to the
+ * sea, hidden from everywhere. */
 static void fill_from(GDALDatasetH d, const char *path)
 {
-    GDALDatasetH from = GDALOpen(path, GA_ReadOnly);
+    GDALDatasetH file = GDALOpen(path, GA_ReadOnly);
+    assert_non_null(file);
+    GDALDatasetH from =
+        GDALCreateCopy(GDALGetDriverByName("MEM"), "", file, FALSE, NULL, NULL, NULL);
     assert_non_null(from);
+    assert_int_equal(GDALFillNodata(GDALGetRasterBand(from, 1), NULL, 100, 0, 0, NULL, NULL, NULL),
+                     CE_None);
     assert_int_equal(GDALReprojectImage(from, NULL, d, NULL, GRA_Bilinear, 0, 0, NULL, NULL, NULL),
                      CE_None);
     GDALClose(from);
+    GDALClose(file);
 }
 
 TEST(shadows_of_real_mountains_fall_where_gdal_has_them)
