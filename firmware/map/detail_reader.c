@@ -5,12 +5,19 @@ static uint32_t row_of(const struct lm_db *db, fx_bam_t latitude)
     return (latitude + FX_BAM_90) >> (db->shift0 + LM_TILE_CELLS_LOG2);
 }
 
-/* Begin a row at its westernmost tile. Its zone is that of its southern border: a tile lies in one
- * zone. */
+/* The zone is that of the southern border: a tile lies in one zone. */
+struct lm_detail_ground lm_detail_ground_of(const struct lm_db *db, uint32_t row, uint32_t column)
+{
+    const uint32_t north_log2 = (uint32_t)db->shift0 + LM_TILE_CELLS_LOG2;
+    const fx_bam_t south = (row << north_log2) - FX_BAM_90;
+    const uint32_t east_log2 = north_log2 + lm_db_zone(south);
+    return (struct lm_detail_ground){{south, column << east_log2}, north_log2, east_log2};
+}
+
+/* Begin a row at its westernmost tile. */
 static void start_row(struct lm_detail_reader *r, const struct lm_db *db)
 {
-    const uint32_t side_log2 = (uint32_t)db->shift0 + LM_TILE_CELLS_LOG2;
-    const uint32_t across_log2 = side_log2 + lm_db_zone((r->row << side_log2) - FX_BAM_90);
+    const uint32_t across_log2 = lm_detail_ground_of(db, r->row, 0).east_log2;
     const uint32_t round = UINT32_MAX >> across_log2;
     r->column = r->box.west >> across_log2;
     r->columns_left = (((r->box.east >> across_log2) - r->column) & round) + 1;
@@ -29,8 +36,7 @@ void lm_detail_reader_start(struct lm_detail_reader *r, const struct lm_db *db,
 
 static void next_tile(struct lm_detail_reader *r, const struct lm_db *db)
 {
-    const uint32_t side_log2 = (uint32_t)db->shift0 + LM_TILE_CELLS_LOG2;
-    const uint32_t across_log2 = side_log2 + lm_db_zone((r->row << side_log2) - FX_BAM_90);
+    const uint32_t across_log2 = lm_detail_ground_of(db, r->row, 0).east_log2;
     r->tiles_left--;
     r->columns_left--;
     r->column = (r->column + 1) & (UINT32_MAX >> across_log2);

@@ -14,7 +14,7 @@ enum {
 
 void lm_detail_patch_clear(struct lm_detail_patch *p, const struct lm_db *db)
 {
-    p->tile_count = p->shape_count = p->left_out = 0;
+    p->tile_count = p->shape_count = 0;
     p->structures = 0;
     p->side_log2 = (uint8_t)(db->shift0 + LM_TILE_CELLS_LOG2);
     for (uint32_t n = 0; n < LM_DB_CLASSES; n++) {
@@ -54,13 +54,10 @@ struct tile_frame {
 static bool set_frame(struct tile_frame *f, const struct lm_detail_reader *r,
                       const struct lm_db *db, const struct lm_patch_geometry *g)
 {
-    const uint32_t side_log2 = (uint32_t)db->shift0 + LM_TILE_CELLS_LOG2;
-    const fx_bam_t latitude = (r->row << side_log2) - FX_BAM_90;
-    const uint32_t across_log2 = side_log2 + lm_db_zone(latitude);
-    const fx_bam_t longitude = r->column << across_log2;
-    const struct lm_position south_west = {latitude, longitude},
-                             north_west = {latitude + (1u << side_log2), longitude},
-                             south_east = {latitude, longitude + (1u << across_log2)};
+    const struct lm_detail_ground ground = lm_detail_ground_of(db, r->row, r->column);
+    struct lm_position south_west = ground.corner, north_west = south_west, south_east = south_west;
+    north_west.latitude += 1u << ground.north_log2;
+    south_east.longitude += 1u << ground.east_log2;
     if (!find_place(g, south_west, &f->corner) || !find_place(g, north_west, &f->north) ||
         !find_place(g, south_east, &f->east)) {
         return false;
@@ -198,12 +195,10 @@ static struct lm_detail_shape shape_of(const struct lm_detail_item *item, const 
 static struct lm_position position_of(const struct lm_detail_reader *r, const struct lm_db *db,
                                       const struct lm_detail_item *item)
 {
-    const uint32_t side_log2 = (uint32_t)db->shift0 + LM_TILE_CELLS_LOG2;
-    const fx_bam_t south = (r->row << side_log2) - FX_BAM_90;
-    const uint32_t across_log2 = side_log2 + lm_db_zone(south);
-    return (struct lm_position){south + (fx_bam_t)((uint64_t)item->north << side_log2 >> 16),
-                                (r->column << across_log2) +
-                                    (fx_bam_t)((uint64_t)item->east << across_log2 >> 16)};
+    const struct lm_detail_ground ground = lm_detail_ground_of(db, r->row, r->column);
+    return (struct lm_position){
+        ground.corner.latitude + (fx_bam_t)((uint64_t)item->north << ground.north_log2 >> 16),
+        ground.corner.longitude + (fx_bam_t)((uint64_t)item->east << ground.east_log2 >> 16)};
 }
 
 void lm_detail_patch_add(struct lm_detail_patch *p, const struct lm_detail_reader *r,
@@ -213,7 +208,11 @@ void lm_detail_patch_add(struct lm_detail_patch *p, const struct lm_detail_reade
     const struct lm_db *db = tiles->db;
     const int64_t reach_m_q8 = (int64_t)g->cells * g->cell_m_q8;
     struct tile_frame frame;
-    if (p->tile_count == LM_DETAIL_TILES_MAX || !set_frame(&frame, r, db, g)) {
+    if (!set_frame(&frame, r, db, g)) {
+        return;
+    }
+    if (p->tile_count == LM_DETAIL_TILES_MAX) {
+        p->left_out += r->record.count;
         return;
     }
     p->tile[p->tile_count++] = (struct lm_detail_tile){r->row, r->column, r->under};

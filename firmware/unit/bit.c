@@ -2,7 +2,7 @@
 
 #include "lm/version.h"
 
-enum { ROW_COUNTERS = 3, COUNTER_ROWS = 12, ROW_NOW = 15, ROW_FAULTS = 16, ROW_RESTART = 20 };
+enum { ROW_COUNTERS = 3, COUNTER_ROWS = 13, ROW_NOW = 16, ROW_FAULTS = 17, ROW_RESTART = 21 };
 enum { COLUMN_NUMBER = 9, COLUMN_SECOND = 18, COLUMN_SECOND_NUMBER = 27 };
 
 static void add_counter(struct lm_text *t, const char *name, uint32_t value, uint32_t column)
@@ -71,8 +71,11 @@ static void add_counters(const struct lm_unit *u, uint32_t row, struct lm_text *
         add_pair(t, "TGT LOST", u->map.count.targets_lost, "SIG LOST",
                  u->map.count.signatures_lost);
         break;
-    default:
+    case 11:
         add_pair(t, "STUCK", u->keys.count.stuck, "SWAPS", u->count.swaps);
+        break;
+    default:
+        add_counter(t, "DTL LOST", u->picture.sar.detail.left_out, COLUMN_NUMBER);
     }
 }
 

@@ -198,6 +198,7 @@ static void print_targets(const struct lm_unit *u)
     printf("chips: %u read, %u damaged, %u without room, %u cells of lines left out\n",
            u->map.chips.count.read, u->map.chips.count.corrupt, u->map.chips.count.left_out,
            u->map.chips.count.cells_left_out);
+    printf("detail: %u items without room\n", u->picture.sar.detail.left_out);
 }
 
 static void print_summary(const struct sim *s)

@@ -18,6 +18,7 @@
 #include <stdint.h>
 
 #include "lm/detail.h"
+#include "lm/geo.h"
 #include "lm/tile_cache.h"
 
 /* Box of tiles of LOD 0 between two corners. It may cross the antimeridian and borders of zones. */
@@ -51,6 +52,14 @@ struct lm_detail_reader {
 
 /* Tiles of a box that are looked at. What lies beyond is left as its cells show it. */
 enum { LM_DETAIL_TILES_MAX = 128 };
+
+/* Where a tile of LOD 0 lies: its south-west corner, and log2 of its sides in BAM. */
+struct lm_detail_ground {
+    struct lm_position corner;
+    uint32_t north_log2, east_log2;
+};
+
+struct lm_detail_ground lm_detail_ground_of(const struct lm_db *db, uint32_t row, uint32_t column);
 
 /* Start with the south-west tile of the box. */
 void lm_detail_reader_start(struct lm_detail_reader *r, const struct lm_db *db,

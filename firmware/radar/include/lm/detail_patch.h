@@ -47,7 +47,7 @@ struct lm_detail_tile {
 /* Detail of a patch. The caller owns it; all fields are read-only to others. */
 struct lm_detail_patch {
     uint32_t tile_count, shape_count;
-    uint32_t left_out;   /* items for which there was no room, since lm_detail_patch_clear */
+    uint32_t left_out;   /* items for which there was no room, of all patches: only grows */
     uint16_t structures; /* bit n: class n is of the kind structure */
     uint8_t side_log2;   /* of a tile of LOD 0, BAM of latitude */
     struct lm_detail_tile tile[LM_DETAIL_TILES_MAX];
@@ -56,6 +56,7 @@ struct lm_detail_patch {
     uint16_t first[LM_DETAIL_BLOCKS + 1], entry[LM_DETAIL_ENTRIES_MAX];
 };
 
+/* Begin a patch. `left_out` stays: the owner zeroes it once. */
 void lm_detail_patch_clear(struct lm_detail_patch *p, const struct lm_db *db);
 
 /* Add the items of the record that the reader has at hand, on the terrain of its tile. `lobe` is

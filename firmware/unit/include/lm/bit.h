@@ -5,15 +5,15 @@
 #include "lm/text.h"
 #include "lm/unit.h"
 
-enum { LM_BIT_ROWS = 21 };
+enum { LM_BIT_ROWS = 22 };
 
 /* The text of a row, 0..LM_BIT_ROWS - 1; it may be empty:
  *
  *     0..2    version, title and size of the image
- *     3..14   counters, two in a row, each a name and its number
- *     15      flags that are raised now
- *     16..19  the faults that rose last, the latest first
- *     20      cause of the board's last restart
+ *     3..15   counters, two in a row, each a name and its number
+ *     16      flags that are raised now
+ *     17..20  the faults that rose last, the latest first
+ *     21      cause of the board's last restart
  */
 struct lm_text lm_bit_row(const struct lm_unit *u, uint32_t row);
 

@@ -807,6 +807,7 @@ TEST(the_bit_page_says_what_the_counters_say)
     r->unit.map.chips.count.corrupt = 7;
     r->unit.map.count.targets_lost = 21;
     r->unit.map.count.signatures_lost = 34;
+    r->unit.picture.sar.detail.left_out = 55;
     run(r, 1);
     press(r, 12);
     /* Stop the clock: the numbers of the picture on the glass. */
@@ -833,6 +834,7 @@ TEST(the_bit_page_says_what_the_counters_say)
                     {"SIG LOST %u", 34},
                     {"STUCK    %u", u->keys.count.stuck},
                     {"SWAPS    %u", u->count.swaps},
+                    {"DTL LOST %u", 55},
                     {"LEVELS   %u", u->map.db.lod_count},
                     {"RECORDS  %u", u->map.db.record_count}};
     assert_true(u->count.bus_errors > 1000 && u->count.commands_refused == 1);

@@ -346,10 +346,15 @@ TEST(room_and_cost_are_bounded)
     for (uint32_t line = 0; line < s.lines; line++) {
         draw(&s, line);
     }
-    for (int k = 0; k < LM_DETAIL_TILES_MAX + 2; k++) {
+    reader.record.count = 0;
+    while (patch.tile_count < LM_DETAIL_TILES_MAX) {
         lm_detail_patch_add(&patch, &reader, &map.tiles, &s.g, FX_BAM_DEG(6));
     }
+    const uint32_t before = patch.left_out;
+    reader.record.count = 7;
+    lm_detail_patch_add(&patch, &reader, &map.tiles, &s.g, FX_BAM_DEG(6));
     assert_int_equal(patch.tile_count, LM_DETAIL_TILES_MAX);
+    assert_int_equal(patch.left_out, before + 7);
 }
 
 /* Anything that passes the record's check may be drawn: no item reaches beyond the line. */

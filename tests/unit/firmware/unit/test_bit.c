@@ -7,7 +7,7 @@
 
 #include <string.h>
 
-enum { ROW_DATABASE = 1, ROW_NOW = 15 };
+enum { ROW_DATABASE = 1, ROW_NOW = 16 };
 
 TEST(a_row_of_the_bit_page_names_the_database)
 {
