@@ -419,6 +419,7 @@ static void make_layered_net(struct db_net *net, uint64_t seed, int layers)
         net->members[m] = shape(2, 7, 2, DB_LOSS_SQUARE);
         net->members[m].layer_count = layers;
         net->members[m].hidden[1] = 5;
+        net->members[m].hidden[2] = 6;
         options.seed++;
         train(&net->members[m], &p, &options, &report);
         db_train_report_free(&report);
@@ -649,6 +650,7 @@ TEST(images_are_classified_as_the_trained_network_says)
 {
     check_images(1);
     check_images(2);
+    check_images(3);
 }
 
 /* ---- The error curve ---- */
