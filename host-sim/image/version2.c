@@ -2,6 +2,7 @@
 
 #include "fx/crc32c.h"
 #include "hs/error.h"
+#include "hs/little_endian.h"
 #include "image/codes.h"
 #include "image/grid.h"
 #include "image/ground.h"
@@ -58,20 +59,6 @@ struct conversion {
     struct image_writer writer;
 };
 
-static uint32_t get_u32(const uint8_t *at)
-{
-    uint32_t value;
-    memcpy(&value, at, sizeof value);
-    return value;
-}
-
-static uint64_t get_u64(const uint8_t *at)
-{
-    uint64_t value;
-    memcpy(&value, at, sizeof value);
-    return value;
-}
-
 static int damaged(const struct conversion *c, const char *what)
 {
     return hs_error(c->name, "convert a sound copy of it, or build it again from its sources", "%s",
@@ -86,50 +73,50 @@ static int read_header(struct conversion *c)
     if (c->size < OLD_HEADER_BYTES || memcmp(h, "LANDMASS", 8) != 0) {
         return hs_error(c->name, "give an image that `landmass-db build` wrote", "is no image");
     }
-    if (get_u32(h + 8) == LM_DB_VERSION) {
+    if (hs_get_u32(h + 8) == LM_DB_VERSION) {
         return hs_error(c->name, "use it as it is", "is an image of version %d already",
                         LM_DB_VERSION);
     }
-    if (get_u32(h + 8) != OLD_VERSION) {
+    if (hs_get_u32(h + 8) != OLD_VERSION) {
         return hs_error(c->name, "build it again from its sources",
                         "is an image of version %" PRIu32 "; this command knows version %d",
-                        get_u32(h + 8), OLD_VERSION);
+                        hs_get_u32(h + 8), OLD_VERSION);
     }
-    if (fx_crc32c(0, h, OLD_CRC_AT) != get_u32(h + OLD_CRC_AT)) {
+    if (fx_crc32c(0, h, OLD_CRC_AT) != hs_get_u32(h + OLD_CRC_AT)) {
         return damaged(c, "its header's checksum does not hold");
     }
     struct lm_image_header *n = &c->header;
     n->shift0 = h[24];
     n->lod_count = h[25];
     n->band_count = (uint16_t)(h[26] | h[27] << 8);
-    n->entry_count = get_u32(h + 28);
-    c->record_count = get_u32(h + 32);
-    n->mean_elevation_m_q6 = (int32_t)get_u32(h + 40);
-    n->geoid_m_q6 = (int32_t)get_u32(h + 44);
-    n->centre_latitude = get_u32(h + 48);
-    n->centre_longitude = get_u32(h + 52);
-    n->section_count = get_u32(h + 56);
+    n->entry_count = hs_get_u32(h + 28);
+    c->record_count = hs_get_u32(h + 32);
+    n->mean_elevation_m_q6 = (int32_t)hs_get_u32(h + 40);
+    n->geoid_m_q6 = (int32_t)hs_get_u32(h + 44);
+    n->centre_latitude = hs_get_u32(h + 48);
+    n->centre_longitude = hs_get_u32(h + 52);
+    n->section_count = hs_get_u32(h + 56);
     memcpy(n->title, h + OLD_TITLE_AT, sizeof n->title);
     const bool is_sound =
         n->shift0 >= LM_DB_SHIFT_MIN && n->lod_count >= 1 && n->lod_count <= OLD_LODS_MAX &&
         n->shift0 + n->lod_count - 1 <= LM_DB_SHIFT_MAX && n->band_count >= 1 &&
         n->band_count <= LM_DB_BANDS_MAX && n->section_count <= OLD_SECTIONS_MAX &&
-        get_u64(h + 16) == c->size && get_u32(h + 36) == OLD_TILE_BYTES;
+        hs_get_u64(h + 16) == c->size && hs_get_u32(h + 36) == OLD_TILE_BYTES;
     return is_sound ? 0 : damaged(c, "a number of its header is out of its range");
 }
 
 static int read_section(struct conversion *c, uint32_t index)
 {
     const uint8_t *entry = c->bytes + OLD_SECTIONS_AT + (size_t)24 * index;
-    const uint32_t type = get_u32(entry);
-    const uint64_t offset = get_u64(entry + 8), bytes = get_u64(entry + 16);
+    const uint32_t type = hs_get_u32(entry);
+    const uint64_t offset = hs_get_u64(entry + 8), bytes = hs_get_u64(entry + 16);
     if (type == 0 || type >= SECTIONS) {
         return 0;
     }
     if (offset % LM_IMAGE_SECTION_ALIGNMENT != 0 || offset > c->size || bytes > c->size - offset) {
         return damaged(c, "a section does not lie inside it");
     }
-    if (fx_crc32c(0, c->bytes + offset, bytes) != get_u32(entry + 4)) {
+    if (fx_crc32c(0, c->bytes + offset, bytes) != hs_get_u32(entry + 4)) {
         return damaged(c, "the checksum of a section does not hold");
     }
     c->sections[type] = (struct span){c->bytes + offset, bytes};
@@ -196,8 +183,8 @@ static int check_bands(const struct conversion *c)
 static const struct old_tile *old_tile_of(const struct conversion *c, uint32_t entry, bool *is_bad)
 {
     const uint8_t *at = c->sections[LM_IMAGE_DIRECTORY].at + (size_t)entry * OLD_ENTRY_BYTES;
-    const uint32_t record = get_u32(at), covered[2] = {entry, record};
-    *is_bad = fx_crc32c(0, covered, sizeof covered) != get_u32(at + 4) ||
+    const uint32_t record = hs_get_u32(at), covered[2] = {entry, record};
+    *is_bad = fx_crc32c(0, covered, sizeof covered) != hs_get_u32(at + 4) ||
               (record != UINT32_MAX && record >= c->record_count);
     if (*is_bad || record == UINT32_MAX) {
         return NULL;

@@ -2,6 +2,7 @@
 #include "fx/crc32c.h"
 #include "hs/error.h"
 #include "hs/input_file.h"
+#include "hs/little_endian.h"
 #include "reference/reference.h"
 
 #include <errno.h>
@@ -20,29 +21,15 @@ enum { ENTRY_BYTES = 16, ENTRY_CRC_AT = 12, UNIT_BYTES = 64 };
 
 static const char rebuild[] = "build the image again with landmass-db";
 
-static uint32_t get_u32(const uint8_t *at)
-{
-    uint32_t value;
-    memcpy(&value, at, sizeof value);
-    return value;
-}
-
-static uint64_t get_u64(const uint8_t *at)
-{
-    uint64_t value;
-    memcpy(&value, at, sizeof value);
-    return value;
-}
-
 /* The bytes of a section, or NULL when it is absent, misplaced, or not `bytes` long. */
 static const uint8_t *find_section(const struct ref_db *db, uint32_t type, uint64_t bytes)
 {
-    const uint32_t count = get_u32(db->bytes + 56);
+    const uint32_t count = hs_get_u32(db->bytes + 56);
     for (uint32_t i = 0; i < count; i++) {
         const uint8_t *entry = db->bytes + 64 + (size_t)24 * i;
-        const uint64_t offset = get_u64(entry + 8);
-        if (get_u32(entry) == type) {
-            return get_u64(entry + 16) == bytes && offset % 64 == 0 && offset <= db->size &&
+        const uint64_t offset = hs_get_u64(entry + 8);
+        if (hs_get_u32(entry) == type) {
+            return hs_get_u64(entry + 16) == bytes && offset % 64 == 0 && offset <= db->size &&
                            bytes <= db->size - offset
                        ? db->bytes + offset
                        : NULL;
@@ -54,11 +41,11 @@ static const uint8_t *find_section(const struct ref_db *db, uint32_t type, uint6
 /* How long a section says it is; 0 when it is absent. */
 static uint64_t section_bytes(const struct ref_db *db, uint32_t type)
 {
-    const uint32_t count = get_u32(db->bytes + 56);
+    const uint32_t count = hs_get_u32(db->bytes + 56);
     for (uint32_t i = 0; i < count; i++) {
         const uint8_t *entry = db->bytes + 64 + (size_t)24 * i;
-        if (get_u32(entry) == type) {
-            return get_u64(entry + 16);
+        if (hs_get_u32(entry) == type) {
+            return hs_get_u64(entry + 16);
         }
     }
     return 0;
@@ -67,11 +54,11 @@ static uint64_t section_bytes(const struct ref_db *db, uint32_t type)
 static bool has_good_section_crc(const struct ref_db *db, uint32_t type, const uint8_t *at,
                                  uint64_t bytes)
 {
-    const uint32_t count = get_u32(db->bytes + 56);
+    const uint32_t count = hs_get_u32(db->bytes + 56);
     for (uint32_t i = 0; i < count; i++) {
         const uint8_t *entry = db->bytes + 64 + (size_t)24 * i;
-        if (get_u32(entry) == type) {
-            return get_u32(entry + 4) == fx_crc32c(0, at, (size_t)bytes);
+        if (hs_get_u32(entry) == type) {
+            return hs_get_u32(entry + 4) == fx_crc32c(0, at, (size_t)bytes);
         }
     }
     return false;
@@ -83,11 +70,11 @@ static int read_header(struct ref_db *db, const char *name)
     if (db->size < HEADER_BYTES || memcmp(h, "LANDMASS", 8) != 0) {
         return hs_error(name, "give an image made by landmass-db", "this is no landmass image");
     }
-    if (get_u32(h + 8) != LM_DB_VERSION) {
+    if (hs_get_u32(h + 8) != LM_DB_VERSION) {
         return hs_error(name, "`landmass-db convert OLD NEW` makes a new image of one of version 2",
-                        "version %u, this program knows %d", get_u32(h + 8), LM_DB_VERSION);
+                        "version %u, this program knows %d", hs_get_u32(h + 8), LM_DB_VERSION);
     }
-    if (get_u32(h + HEADER_CRC_AT) != fx_crc32c(0, h, HEADER_CRC_AT)) {
+    if (hs_get_u32(h + HEADER_CRC_AT) != fx_crc32c(0, h, HEADER_CRC_AT)) {
         return hs_error(name, rebuild, "the header's checksum does not hold");
     }
     if (h[TOP_AT] != 0) {
@@ -96,21 +83,21 @@ static int read_header(struct ref_db *db, const char *name)
     db->shift0 = h[24];
     db->level_count = h[25];
     db->band_count = (uint32_t)(h[26] | h[27] << 8);
-    db->entry_count = get_u32(h + 28);
-    db->record_count = get_u32(h + 32);
+    db->entry_count = hs_get_u32(h + 28);
+    db->record_count = hs_get_u32(h + 32);
     const bool is_sound = db->shift0 >= LM_DB_SHIFT_MIN && db->level_count >= 1 &&
                           db->level_count <= LM_DB_LODS_MAX &&
                           db->shift0 + db->level_count - 1 <= LM_DB_SHIFT_MAX &&
                           db->band_count >= 1 && db->band_count <= LM_DB_BANDS_MAX &&
-                          get_u32(h + 36) == LM_TILE_BYTES && get_u64(h + 16) <= db->size &&
-                          get_u32(h + 56) >= 5 && get_u32(h + 56) <= SECTIONS_MAX;
+                          hs_get_u32(h + 36) == LM_TILE_BYTES && hs_get_u64(h + 16) <= db->size &&
+                          hs_get_u32(h + 56) >= 5 && hs_get_u32(h + 56) <= SECTIONS_MAX;
     if (!is_sound) {
         return hs_error(name, rebuild, "a number of the header is out of its range");
     }
-    db->mean_elevation_m = (int32_t)get_u32(h + 40) / 64.0;
-    db->geoid_m = (int32_t)get_u32(h + 44) / 64.0;
-    db->centre.latitude_deg = (int32_t)get_u32(h + 48) * (360 / 4294967296.0);
-    db->centre.longitude_deg = (int32_t)get_u32(h + 52) * (360 / 4294967296.0);
+    db->mean_elevation_m = (int32_t)hs_get_u32(h + 40) / 64.0;
+    db->geoid_m = (int32_t)hs_get_u32(h + 44) / 64.0;
+    db->centre.latitude_deg = (int32_t)hs_get_u32(h + 48) * (360 / 4294967296.0);
+    db->centre.longitude_deg = (int32_t)hs_get_u32(h + 52) * (360 / 4294967296.0);
     return 0;
 }
 
@@ -175,8 +162,8 @@ double ref_db_geoid_m(const struct ref_db *db, struct ref_place place)
         return db->geoid_m;
     }
     const double turn = 360 / 4294967296.0, width = ldexp(360, g[9] - 32) * (g[11] - 1);
-    const double middle = (int32_t)get_u32(g + 4) * turn + width / 2;
-    const double v = steps(place.latitude_deg - (int32_t)get_u32(g) * turn, g[8], g[10]);
+    const double middle = (int32_t)hs_get_u32(g + 4) * turn + width / 2;
+    const double v = steps(place.latitude_deg - (int32_t)hs_get_u32(g) * turn, g[8], g[10]);
     const double u = steps(remainder(place.longitude_deg - middle, 360) + width / 2, g[9], g[11]);
     const double row = fmin(floor(v), g[10] - 2), column = fmin(floor(u), g[11] - 2);
     double sum = 0;
@@ -313,10 +300,10 @@ static const struct lm_tile *entry_tile(const struct ref_db *db, uint32_t entry,
     uint8_t checked[4 + ENTRY_CRC_AT];
     memcpy(checked, &entry, 4);
     memcpy(checked + 4, at, ENTRY_CRC_AT);
-    const uint32_t place = get_u32(at);
+    const uint32_t place = hs_get_u32(at);
     const uint32_t size = (uint32_t)(at[4] | at[5] << 8);
     const bool is_raw = at[6] == 0 && size * UNIT_BYTES == LM_TILE_BYTES;
-    if (get_u32(at + ENTRY_CRC_AT) != fx_crc32c(0, checked, sizeof checked) ||
+    if (hs_get_u32(at + ENTRY_CRC_AT) != fx_crc32c(0, checked, sizeof checked) ||
         place == UINT32_MAX || !is_raw || ((uint64_t)place + size) * UNIT_BYTES > db->tiles_bytes) {
         return NULL;
     }
