@@ -93,6 +93,9 @@ static bool has_strays(const struct db_band_sample *s, double low, double high)
 /* NULL: numbers. */
 static const char *seems(GDALRasterBandH band)
 {
+    if (GDALDataTypeIsComplex(GDALGetRasterDataType(band))) {
+        return "radar data before detection: its numbers are complex";
+    }
     const GDALColorInterp colour = GDALGetRasterColorInterpretation(band);
     if (GDALGetRasterCategoryNames(band) || GDALGetMetadataItem(band, DB_CLASS_NAMES_ITEM, NULL)) {
         return "a class raster: its numbers have names";
@@ -151,12 +154,19 @@ int db_plausible_terrain(GDALRasterBandH band, const char *path, double metres, 
 
 /* ---- reflectivity ---- */
 
+static int doubt_emptiness(const struct db_band_sample *s, const char *path, bool is_trusted)
+{
+    return s->count > 0 ? 0
+                        : hs_doubt(is_trusted, path, "check it with gdalinfo -stats",
+                                   "has no value at all in a sample of its pixels");
+}
+
 static int judge_reflectivity(const struct db_band_sample *s, const char *path, bool is_trusted)
 {
     const char *remedy = "give gamma in dB, as `landmass-db reflect` writes it";
     const double beyond = 100 - share_within(s, -100, 60);
     if (s->count == 0) {
-        return 0;
+        return doubt_emptiness(s, path, is_trusted);
     }
     if (beyond > 0) {
         return hs_doubt(is_trusted, path, remedy,
@@ -202,6 +212,9 @@ static int compare_with_classes(const struct db_band_sample *s, const char *path
 
 static int judge_heights(const struct db_band_sample *s, const char *path, bool is_trusted)
 {
+    if (s->count == 0) {
+        return doubt_emptiness(s, path, is_trusted);
+    }
     const double below = share_within(s, -INFINITY, -2), above = share_within(s, 100, INFINITY);
     if (below > 5) {
         return hs_doubt(is_trusted, path, "give heights above ground in metres",

@@ -108,6 +108,9 @@ static int is_special(const char *path)
 
 static int check_place(const char *path)
 {
+    if (path[0] == '\0') {
+        return hs_error("output", "name a file", "its name is empty");
+    }
     if (is_special(path)) {
         return hs_error(path, "name an ordinary file", "exists and is no ordinary file");
     }

@@ -707,6 +707,45 @@ def heights_in_smoots():
     return db(*build_with("--heights", "smoots-high.tif"))
 
 
+wrong_raster("reflectivity without a value", "--reflectivity", plane_of("nothing.tif", numpy.full((SIDE, SIDE), numpy.nan)))
+wrong_raster("heights without a value", "--heights", plane_of("nothing.tif", numpy.full((SIDE, SIDE), numpy.nan)))
+doubted("complex numbers as terrain", lambda: terrain_of("complex.tif", slope(), kind=gdal.GDT_CFloat32))
+
+
+@row("terrain that is cut short", "build", "refused")
+def cut_short():
+    with open("cut.tif", "wb") as file:
+        file.write(contents("dem.tif")[:2000])
+    return db(*BUILD_TERRAIN, "--terrain", "cut.tif")
+
+
+@row("terrain without a CRS", "build", "refused")
+def without_crs():
+    terrain("nowhere.tif", system=None)
+    return db(*BUILD_TERRAIN, "--terrain", "nowhere.tif")
+
+
+@row("terrain without a value", "build", "refused")
+def without_values():
+    terrain("voids.tif", numpy.full((60, 60), -9999, numpy.float32), nodata=-9999)
+    return db(*BUILD_TERRAIN, "--terrain", "voids.tif")
+
+
+@row("output without a name", "build", "refused")
+def without_a_name():
+    return db(*BUILD_TERRAIN[:-1], "", "--terrain", "dem.tif")
+
+
+for pole, system in (("north", "EPSG:3413"), ("south", "EPSG:3031")):
+    @row("terrain over the %s pole" % pole, "build", "done")
+    def over_a_pole(system=system):
+        raster("pole.tif", [numpy.full((60, 60), 50, numpy.float32)], at=(-30000, 30000), step=1000, system=system)
+        done = db("build", "--classes", "heaton6.classes", "--terrain", "pole.tif", "--cell", "600", "--geoid-grid", "egm96",
+                  "--out", "pole.lmdb")
+        assert done.code == 0 and db("verify", "pole.lmdb").code == 0, done.err
+        return done
+
+
 # ---- Training.
 
 @row("constant image", "train", "refused")
