@@ -12,13 +12,13 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { WORDS_MAX = 10, PRESS_US = 100000 };
+enum { WORDS_MAX = 10, PRESS_US = 100000, REFUSAL_BYTES = 120 };
 
 /* A line may mean two events: a button goes down and up again. */
 struct line_events {
     struct script_event event[2];
     int count;
-    char refusal[80]; /* why the radar cannot do it; "": the words are not understood */
+    char refusal[REFUSAL_BYTES]; /* why the radar cannot do it; "": the words are not understood */
 };
 
 /* All of `word` as a number within the limits. */
@@ -399,6 +399,33 @@ static int append(struct script *s, const char *place, int line_number,
     return 0;
 }
 
+/* What is wrong with a line that was not understood. */
+static void find_reason(const struct script *s, char **words, int count, char text[REFUSAL_BYTES])
+{
+    static const char *const commands[] = {"range",    "azimuth",   "gain",   "freeze", "sar",
+                                           "sarfrom",  "steer",     "rain",   "jam",    "weather",
+                                           "seastate", "osb",       "rocker", "knob",   "slew",
+                                           "cursor",   "designate", "drop",   "picture"};
+    int32_t which;
+    double seconds;
+    const size_t size = REFUSAL_BYTES;
+    if (!number(words[0], 0, 1e6, &seconds)) {
+        snprintf(text, size, "begins with `%.40s`, which is no time in seconds", words[0]);
+    } else if (count < 2) {
+        snprintf(text, size, "has a time but no command");
+    } else if (count > WORDS_MAX) {
+        snprintf(text, size, "has more words than any command takes");
+    } else if (lm_radar_find_mode(s->radar, words[1]) < 0 &&
+               !choice(words[1], commands, sizeof commands / sizeof commands[0], &which)) {
+        snprintf(text, size, "`%.40s` is not a command of a script", words[1]);
+    } else if (count == 2) {
+        snprintf(text, size, "`%.40s` needs values", words[1]);
+    } else {
+        snprintf(text, size, "`%.40s` does not take these %d values, or one is out of range",
+                 words[1], count - 2);
+    }
+}
+
 static int take_line(struct script *s, const char *path, int line_number, char *line)
 {
     char *words[WORDS_MAX], place[512];
@@ -409,9 +436,10 @@ static int take_line(struct script *s, const char *path, int line_number, char *
     }
     struct line_events parsed;
     if (count > WORDS_MAX || !parse_line(s, words, count, &parsed)) {
-        const bool is_refused = count <= WORDS_MAX && parsed.refusal[0];
-        return hs_error(place, "landmass-sim --help lists the commands", "%s",
-                        is_refused ? parsed.refusal : "is not a command of a script");
+        if (count > WORDS_MAX || !parsed.refusal[0]) {
+            find_reason(s, words, count, parsed.refusal);
+        }
+        return hs_error(place, "landmass-sim --help lists the commands", "%s", parsed.refusal);
     }
     if (parsed.event[0].time_us < s->last_us) {
         return hs_error(place, "sort the script by time", "goes back in time");

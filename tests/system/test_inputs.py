@@ -746,6 +746,18 @@ for pole, system in (("north", "EPSG:3413"), ("south", "EPSG:3031")):
         return done
 
 
+def script(name, text):
+    @row("script line, " + name, "landmass-sim", "refused")
+    def is_refused():
+        with open("flight.script", "w") as file:
+            file.write(text + "\n")
+        return tool("sim", "--db", "area.lmdb", "--script", "flight.script", "--seconds", "1")
+
+
+for text in ("range 10", "5", "5 rang 10", "5 range", "5 range ten", "5 gain 99", "5 sar 42 -29"):
+    script("`%s`" % text, text)
+
+
 # ---- Training.
 
 @row("constant image", "train", "refused")

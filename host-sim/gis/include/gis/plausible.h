@@ -21,8 +21,8 @@ int db_band_sample(struct db_band_sample *s, GDALRasterBandH band, const char *p
 /* Harmless on a zeroed struct. */
 void db_band_sample_free(struct db_band_sample *s);
 
-/* Each returns 0, or -1 with a doubt or an error reported. Complex numbers are doubted in all, and no
- * value at all in the last two. */
+/* Each returns 0, or -1 with a doubt or an error reported. Complex numbers are doubted in all, and
+ * no value at all in the last two. */
 
 /* Terrain, `metres` a unit: it has the colours of a picture or classes; values are many that lie
  * nowhere on Earth (another unit); posts hold -9999 or -32767 that no nodata value declares. */
