@@ -239,7 +239,7 @@ static int set_aside(const struct task *t, int member)
 /* The priors are those of the samples before thinning. */
 static int find_output_priors(struct task *t)
 {
-    double priors[DB_CLASS_MAX];
+    double priors[DB_CLASS_MAX] = {0};
     if (db_priors_find(priors, t->samples, t->table, t->options) != 0) {
         return -1;
     }

@@ -202,7 +202,7 @@ campus() {
     for image in rgb_512.ppm hs48_128.bsq; do
         name=${image%%_*}
         say "train and segment $image"
-        "$bin"/landmass-db train --image "$source/$image" --labels "$source/labels_512.pgm" --map $in/campus.map \
+        "$bin"/landmass-db train --image "$source/$image" --labels "$source/labels_512.pgm" --map $in/campus.map --priors equal \
             --classes $classes --black-is-nodata --hold-out polygons:0.33 --net "$out/$name.net"
         "$bin"/landmass-db segment --image "$source/$image" --black-is-nodata --classes $classes \
             --net "$out/$name.net" --out "$out/$name-classes.tif" --picture "$out/$name-classes.png" \

@@ -80,10 +80,12 @@ struct work {
     uint8_t *bytes; /* owned; likewise */
 };
 
+_Static_assert((int)LM_DB_CLASS_NONE <= (int)DB_CLASS_MAX, "the table holds the image's classes");
+
 /* The image's classes as a table: their names and colours; one without a name gets its number. */
 static void read_table(struct work *w)
 {
-    for (int i = 0; i < LM_DB_CLASS_NONE && i < DB_CLASS_MAX; i++) {
+    for (int i = 0; i < LM_DB_CLASS_NONE; i++) {
         const struct lm_class *c = &w->image.db.classes.entry[i];
         struct db_class *item = &w->table.items[i];
         snprintf(item->name, sizeof item->name, "%.16s", c->name);
