@@ -151,7 +151,7 @@ int db_raster_open(struct db_raster *r, const struct db_raster_options *options)
 
 int db_raster_open_one(struct db_raster *r, const char *path)
 {
-    struct db_list list = {.items = {(char *)path}, .count = 1};
+    struct hs_list list = {.items = {(char *)path}, .count = 1};
     const struct db_raster_options options = {.paths = &list};
     return db_raster_open(r, &options);
 }

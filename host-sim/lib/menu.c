@@ -50,7 +50,7 @@ static void print_manual(const struct hs_menu *menu)
     manual_exit_status();
 }
 
-/* Print what `word` asks for, as db_options_explain does. */
+/* Print what `word` asks for, as hs_options_explain does. */
 static bool explain(const struct hs_menu *menu, const char *word)
 {
     if (strcmp(word, "--help") == 0 || strcmp(word, "-h") == 0) {

@@ -14,8 +14,8 @@
 
 /* A command line on its way into the table. */
 struct reader {
-    const struct db_usage *usage;
-    const struct db_option *options;
+    const struct hs_usage *usage;
+    const struct hs_option *options;
     size_t count;
     int argc;
     char **argv;
@@ -23,7 +23,7 @@ struct reader {
     size_t next_option; /* where to look for the next argument that is no option */
 };
 
-static int usage_error(const struct db_usage *usage, const char *option, const char *cause)
+static int usage_error(const struct hs_usage *usage, const char *option, const char *cause)
 {
     char place[128], remedy[128];
     const char *blank = *usage->command ? " " : "";
@@ -32,18 +32,18 @@ static int usage_error(const struct db_usage *usage, const char *option, const c
     return hs_error(place, remedy, "%s", cause);
 }
 
-int db_options_wrong(const struct db_usage *usage, const char *option, const char *cause)
+int hs_options_wrong(const struct hs_usage *usage, const char *option, const char *cause)
 {
     usage_error(usage, option, cause);
     return HS_EXIT_USAGE;
 }
 
-static int add_items(struct db_list *list, const char *text)
+static int add_items(struct hs_list *list, const char *text)
 {
     while (*text) {
         const size_t length = strcspn(text, ",");
         if (length > 0) {
-            if (list->count == DB_LIST_MAX) {
+            if (list->count == HS_LIST_MAX) {
                 return -1;
             }
             list->items[list->count] = strndup(text, length);
@@ -57,7 +57,7 @@ static int add_items(struct db_list *list, const char *text)
     return 0;
 }
 
-bool db_parse_number(const char *text, double *number)
+bool hs_parse_number(const char *text, double *number)
 {
     char *end;
     errno = 0;
@@ -66,9 +66,9 @@ bool db_parse_number(const char *text, double *number)
 }
 
 /* Also false when `text` is no number. */
-static bool read_within(const struct db_option *o, const char *text, double *number)
+static bool read_within(const struct hs_option *o, const char *text, double *number)
 {
-    return db_parse_number(text, number) && *number >= o->low && *number <= o->high;
+    return hs_parse_number(text, number) && *number >= o->low && *number <= o->high;
 }
 
 /* Which of the words between the bars, or -1. */
@@ -84,11 +84,11 @@ static int choice_of(const char *words, const char *text)
     return -1;
 }
 
-static const char *store_number(const struct db_option *o, const char *text)
+static const char *store_number(const struct hs_option *o, const char *text)
 {
     double number;
     const bool is_within = read_within(o, text, &number);
-    if (o->kind == DB_REAL) {
+    if (o->kind == HS_REAL) {
         if (!is_within) {
             return "needs a number within its range";
         }
@@ -103,48 +103,48 @@ static const char *store_number(const struct db_option *o, const char *text)
 }
 
 /* NULL, or what is wrong with the value. */
-static const char *store(const struct db_option *o, const char *text)
+static const char *store(const struct hs_option *o, const char *text)
 {
     switch (o->kind) {
-    case DB_FLAG:
+    case HS_FLAG:
         *(bool *)o->target = true;
         return NULL;
-    case DB_TEXT:
-    case DB_INPUT:
-    case DB_INPUT_ARGUMENT:
-    case DB_OUTPUT:
-    case DB_OUTPUT_ARGUMENT:
-    case DB_FOLDER:
+    case HS_TEXT:
+    case HS_INPUT:
+    case HS_INPUT_ARGUMENT:
+    case HS_OUTPUT:
+    case HS_OUTPUT_ARGUMENT:
+    case HS_FOLDER:
         *(const char **)o->target = text;
         return NULL;
-    case DB_LIST:
-    case DB_INPUTS:
+    case HS_LIST:
+    case HS_INPUTS:
         return add_items(o->target, text) == 0 ? NULL : "too many values";
-    case DB_REAL:
-    case DB_INTEGER:
+    case HS_REAL:
+    case HS_INTEGER:
         return store_number(o, text);
-    case DB_CHOICE:
+    case HS_CHOICE:
         *(int *)o->target = choice_of(o->value_name, text);
         return *(int *)o->target >= 0 ? NULL : "needs one of its words";
-    case DB_TAKER: {
-        const struct db_taker *taker = o->target;
+    case HS_TAKER: {
+        const struct hs_taker *taker = o->target;
         return taker->take(taker->context, text);
     }
-    case DB_HEADING:
+    case HS_HEADING:
         break;
     }
     return "is not understood";
 }
 
-static bool is_option(const struct db_option *o)
+static bool is_option(const struct hs_option *o)
 {
-    return !db_is_argument(o) && o->kind != DB_HEADING;
+    return !hs_is_argument(o) && o->kind != HS_HEADING;
 }
 
-static const struct db_option *find(const struct reader *r, const char *name, size_t length)
+static const struct hs_option *find(const struct reader *r, const char *name, size_t length)
 {
     for (size_t i = 0; i < r->count; i++) {
-        const struct db_option *o = &r->options[i];
+        const struct hs_option *o = &r->options[i];
         if (is_option(o) && strlen(o->name) == length && strncmp(o->name, name, length) == 0) {
             return o;
         }
@@ -152,7 +152,7 @@ static const struct db_option *find(const struct reader *r, const char *name, si
     return NULL;
 }
 
-static int store_or_report(const struct reader *r, const struct db_option *o, const char *text)
+static int store_or_report(const struct reader *r, const struct hs_option *o, const char *text)
 {
     const char *wrong = store(o, text);
     if (!wrong) {
@@ -166,8 +166,8 @@ static int store_or_report(const struct reader *r, const struct db_option *o, co
 static int read_argument(struct reader *r, const char *word)
 {
     while (r->next_option < r->count) {
-        const struct db_option *o = &r->options[r->next_option++];
-        if (db_is_argument(o)) {
+        const struct hs_option *o = &r->options[r->next_option++];
+        if (hs_is_argument(o)) {
             return store_or_report(r, o, word);
         }
     }
@@ -183,15 +183,15 @@ static int read_one(struct reader *r)
     }
     const char *name = word + 2;
     const size_t length = strncmp(word, "--", 2) == 0 ? strcspn(name, "=") : 0;
-    const struct db_option *o = find(r, name, length);
+    const struct hs_option *o = find(r, name, length);
     if (!o) {
         return usage_error(r->usage, word, "is not an option of this command");
     }
     const char *value = name[length] == '=' ? name + length + 1 : NULL;
-    if (o->kind == DB_FLAG && value) {
+    if (o->kind == HS_FLAG && value) {
         return usage_error(r->usage, word, "takes no value");
     }
-    if (o->kind != DB_FLAG && !value) {
+    if (o->kind != HS_FLAG && !value) {
         if (r->next >= r->argc) {
             return usage_error(r->usage, word, "needs a value");
         }
@@ -200,35 +200,35 @@ static int read_one(struct reader *r)
     return store_or_report(r, o, value);
 }
 
-static bool is_given(const struct db_option *o)
+static bool is_given(const struct hs_option *o)
 {
-    return o->kind == DB_LIST || o->kind == DB_INPUTS
-               ? ((const struct db_list *)o->target)->count > 0
+    return o->kind == HS_LIST || o->kind == HS_INPUTS
+               ? ((const struct hs_list *)o->target)->count > 0
                : *(const char **)o->target != NULL;
 }
 
-static void note_inputs(const struct db_option *o)
+static void note_inputs(const struct hs_option *o)
 {
-    if ((o->kind == DB_INPUT || o->kind == DB_INPUT_ARGUMENT) && is_given(o)) {
+    if ((o->kind == HS_INPUT || o->kind == HS_INPUT_ARGUMENT) && is_given(o)) {
         hs_input_note(*(const char **)o->target);
     }
-    const struct db_list *list = o->kind == DB_INPUTS ? o->target : NULL;
+    const struct hs_list *list = o->kind == HS_INPUTS ? o->target : NULL;
     for (int i = 0; list && i < list->count; i++) {
         hs_input_note(list->items[i]);
     }
 }
 
 /* All inputs first: an option's place in the table must not matter. */
-static int claim_outputs(const struct db_option *options, size_t count)
+static int claim_outputs(const struct hs_option *options, size_t count)
 {
     for (size_t i = 0; i < count; i++) {
         note_inputs(&options[i]);
     }
     for (size_t i = 0; i < count; i++) {
-        const struct db_option *o = &options[i];
-        const bool is_output = o->kind == DB_OUTPUT || o->kind == DB_OUTPUT_ARGUMENT;
+        const struct hs_option *o = &options[i];
+        const bool is_output = o->kind == HS_OUTPUT || o->kind == HS_OUTPUT_ARGUMENT;
         if ((is_output && is_given(o) && hs_output_claim(*(const char **)o->target) != 0) ||
-            (o->kind == DB_FOLDER && is_given(o) &&
+            (o->kind == HS_FOLDER && is_given(o) &&
              hs_output_folder_check(*(const char **)o->target) != 0)) {
             return -1;
         }
@@ -239,8 +239,8 @@ static int claim_outputs(const struct db_option *options, size_t count)
 static int check_required(const struct reader *r)
 {
     for (size_t i = 0; i < r->count; i++) {
-        const struct db_option *o = &r->options[i];
-        if (o->kind != DB_HEADING && o->is_required && !is_given(o)) {
+        const struct hs_option *o = &r->options[i];
+        if (o->kind != HS_HEADING && o->is_required && !is_given(o)) {
             char name[64];
             snprintf(name, sizeof name, "%s%s", is_option(o) ? "--" : "", o->name);
             return usage_error(r->usage, name, "is required");
@@ -249,11 +249,11 @@ static int check_required(const struct reader *r)
     return 0;
 }
 
-bool db_options_read(const struct db_usage *usage, const struct db_option *options, size_t count,
+bool hs_options_read(const struct hs_usage *usage, const struct hs_option *options, size_t count,
                      int argc, char **argv, int *exit_code)
 {
     for (int i = 1; i < argc; i++) {
-        if (db_options_explain(usage, options, count, argv[i])) {
+        if (hs_options_explain(usage, options, count, argv[i])) {
             *exit_code = HS_EXIT_OK;
             return false;
         }
@@ -272,7 +272,7 @@ bool db_options_read(const struct db_usage *usage, const struct db_option *optio
     return claim_outputs(options, count) == 0;
 }
 
-void db_list_free(struct db_list *list)
+void hs_list_free(struct hs_list *list)
 {
     for (int i = 0; i < list->count; i++) {
         free(list->items[i]);
@@ -280,10 +280,10 @@ void db_list_free(struct db_list *list)
     list->count = 0;
 }
 
-int db_split_word_number(const char *text, char *word, size_t word_size, double *number)
+int hs_split_word_number(const char *text, char *word, size_t word_size, double *number)
 {
     const size_t length = strcspn(text, ":");
-    if (text[length] != ':' || length >= word_size || !db_parse_number(text + length + 1, number)) {
+    if (text[length] != ':' || length >= word_size || !hs_parse_number(text + length + 1, number)) {
         return -1;
     }
     memcpy(word, text, length);

@@ -9,8 +9,8 @@
 #include <string.h>
 
 struct table {
-    const struct db_usage *usage;
-    const struct db_option *options;
+    const struct hs_usage *usage;
+    const struct hs_option *options;
     size_t count;
 };
 
@@ -76,9 +76,9 @@ static void print_paragraphs(const char *text)
     printf("%s", column > 0 ? "\n" : "");
 }
 
-static bool is_in_synopsis(const struct db_option *o)
+static bool is_in_synopsis(const struct hs_option *o)
 {
-    return db_is_argument(o) || (o->is_required && o->kind != DB_HEADING);
+    return hs_is_argument(o) || (o->is_required && o->kind != HS_HEADING);
 }
 
 /* "landmass-db segment --classes FILE IMAGE [options]", each word framed by what the form wants. */
@@ -86,12 +86,12 @@ static void print_synopsis(const struct table *t, void (*print)(const char *))
 {
     for (int pass = 0; pass < 2; pass++) {
         for (size_t i = 0; i < t->count; i++) {
-            const struct db_option *o = &t->options[i];
-            if (!is_in_synopsis(o) || db_is_argument(o) != (pass == 1)) {
+            const struct hs_option *o = &t->options[i];
+            if (!is_in_synopsis(o) || hs_is_argument(o) != (pass == 1)) {
                 continue;
             }
             print(o->is_required ? " " : " [");
-            if (db_is_argument(o)) {
+            if (hs_is_argument(o)) {
                 print(o->name);
             } else {
                 print("--");
@@ -111,15 +111,15 @@ static void print_plain(const char *text)
 }
 
 /* "Range 1 to 89; default 25." in one line, or nothing. */
-static void print_range(const struct db_option *o, const char *indent)
+static void print_range(const struct hs_option *o, const char *indent)
 {
-    if (o->kind == DB_REAL && isnan(*(double *)o->target)) {
+    if (o->kind == HS_REAL && isnan(*(double *)o->target)) {
         printf("%sRange %g to %g.\n", indent, o->low, o->high);
-    } else if (o->kind == DB_REAL) {
+    } else if (o->kind == HS_REAL) {
         printf("%sRange %g to %g; default %g.\n", indent, o->low, o->high, *(double *)o->target);
-    } else if (o->kind == DB_INTEGER) {
+    } else if (o->kind == HS_INTEGER) {
         printf("%sRange %.0f to %.0f; default %ld.\n", indent, o->low, o->high, *(long *)o->target);
-    } else if (o->kind == DB_CHOICE && *(int *)o->target >= 0) {
+    } else if (o->kind == HS_CHOICE && *(int *)o->target >= 0) {
         const char *word = o->value_name;
         for (int i = *(int *)o->target; i > 0; i--) {
             word += strcspn(word, "|") + 1;
@@ -128,15 +128,15 @@ static void print_range(const struct db_option *o, const char *indent)
     }
 }
 
-static void print_option(const struct db_option *o)
+static void print_option(const struct hs_option *o)
 {
-    if (o->kind == DB_HEADING) {
+    if (o->kind == HS_HEADING) {
         printf("\n%s%s", o->name ? o->name : "", o->name ? ":\n" : "");
         print_paragraphs(o->help);
         return;
     }
-    const bool has_value = !db_is_argument(o) && o->value_name;
-    printf("  %s%s%s%s%s\n", db_is_argument(o) ? "" : "--", o->name, has_value ? " " : "",
+    const bool has_value = !hs_is_argument(o) && o->value_name;
+    printf("  %s%s%s%s%s\n", hs_is_argument(o) ? "" : "--", o->name, has_value ? " " : "",
            has_value ? o->value_name : "", o->is_required ? "  (required)" : "");
     print_lines(o->help, 6);
     print_range(o, "      ");
@@ -155,23 +155,23 @@ static void print_help(const struct table *t)
         print_option(&t->options[i]);
     }
     printf("%s  -h, --help[=man|list]\n      %s\n  --version\n      %s\n",
-           t->count > 0 && t->options[t->count - 1].kind == DB_HEADING ? "\n" : "", help_help,
+           t->count > 0 && t->options[t->count - 1].kind == HS_HEADING ? "\n" : "", help_help,
            version_help);
 }
 
-static void print_manual_option(const struct db_option *o)
+static void print_manual_option(const struct hs_option *o)
 {
-    if (o->kind == DB_HEADING) {
+    if (o->kind == HS_HEADING) {
         printf(".SS ");
         manual_text(o->name ? o->name : "Remarks");
         printf("\n");
         manual_paragraphs(o->help);
         return;
     }
-    printf(".TP\n\\fB%s", db_is_argument(o) ? "" : "\\-\\-");
+    printf(".TP\n\\fB%s", hs_is_argument(o) ? "" : "\\-\\-");
     manual_text(o->name);
     printf("\\fR");
-    if (!db_is_argument(o) && o->value_name) {
+    if (!hs_is_argument(o) && o->value_name) {
         printf(" \\fI");
         manual_text(o->value_name);
         printf("\\fR");
@@ -204,18 +204,18 @@ static void print_manual(const struct table *t)
 }
 
 /* What the shell may complete a value from. */
-static const char *source_of(const struct db_option *o)
+static const char *source_of(const struct hs_option *o)
 {
     switch (o->kind) {
-    case DB_INPUT:
-    case DB_INPUTS:
-    case DB_INPUT_ARGUMENT:
-    case DB_OUTPUT:
-    case DB_OUTPUT_ARGUMENT:
+    case HS_INPUT:
+    case HS_INPUTS:
+    case HS_INPUT_ARGUMENT:
+    case HS_OUTPUT:
+    case HS_OUTPUT_ARGUMENT:
         return "file";
-    case DB_FOLDER:
+    case HS_FOLDER:
         return "folder";
-    case DB_CHOICE:
+    case HS_CHOICE:
         return o->value_name;
     default:
         return "";
@@ -227,17 +227,17 @@ static const char *source_of(const struct db_option *o)
 static void print_list(const struct table *t)
 {
     for (size_t i = 0; i < t->count; i++) {
-        const struct db_option *o = &t->options[i];
-        if (db_is_argument(o)) {
+        const struct hs_option *o = &t->options[i];
+        if (hs_is_argument(o)) {
             printf("\t%s\t%s\n", o->name, source_of(o));
-        } else if (o->kind != DB_HEADING) {
+        } else if (o->kind != HS_HEADING) {
             printf("--%s\t%s\t%s\n", o->name, o->value_name ? o->value_name : "", source_of(o));
         }
     }
     printf("--help\t\t\n--version\t\t\n");
 }
 
-bool db_options_explain(const struct db_usage *usage, const struct db_option *options, size_t count,
+bool hs_options_explain(const struct hs_usage *usage, const struct hs_option *options, size_t count,
                         const char *word)
 {
     const struct table t = {usage, options, count};

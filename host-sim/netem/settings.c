@@ -26,81 +26,81 @@ struct nm_settings nm_settings_default(void)
     };
 }
 
-void nm_target_options(struct nm_settings *s, struct db_option *o)
+void nm_target_options(struct nm_settings *s, struct hs_option *o)
 {
     struct setup *t = &s->setup;
-    const struct db_option options[] = {
-        {"depression", DB_REAL, &t->depression_deg, 1, 89, "DEG",
+    const struct hs_option options[] = {
+        {"depression", HS_REAL, &t->depression_deg, 1, 89, "DEG",
          "of the line of sight below the horizon, where chips do not tell", false},
-        {"wavelength", DB_REAL, &t->wavelength_m, 0.001, 10, "M", "of the radar", false},
-        {"cells", DB_INTEGER, &t->cells, 64, 1024, "N",
+        {"wavelength", HS_REAL, &t->wavelength_m, 0.001, 10, "M", "of the radar", false},
+        {"cells", HS_INTEGER, &t->cells, 64, 1024, "N",
          "of 0.1 m, the side of the simulated picture; chips have half as many pixels", false},
-        {"rays", DB_INTEGER, &t->rays_per_cell, 1, 16, "N",
+        {"rays", HS_INTEGER, &t->rays_per_cell, 1, 16, "N",
          "N x N of them meet a cell of level ground", false},
-        {"bounces", DB_INTEGER, &t->bounces, 1, TRACE_BOUNCES_MAX, "N", "reflections followed",
+        {"bounces", HS_INTEGER, &t->bounces, 1, TRACE_BOUNCES_MAX, "N", "reflections followed",
          false},
-        {"resolution", DB_REAL, &t->resolution_m, 0.1, 10, "M",
+        {"resolution", HS_REAL, &t->resolution_m, 0.1, 10, "M",
          "of the radar, between -3 dB points", false},
-        {"kernel-gain", DB_REAL, &s->kernel_gain, 0, 1e9, "K",
+        {"kernel-gain", HS_REAL, &s->kernel_gain, 0, 1e9, "K",
          "amplitude of a cell that returns everything; 0: the root of its radar cross section in\n"
          "m^2, as calibrated MSTAR chips have it",
          false},
-        {"law", DB_TEXT, &t->law, 0, 0, "NAME",
+        {"law", HS_TEXT, &t->law, 0, 0, "NAME",
          "of the simulator before training: raysar, fresnel-hh, fresnel-vv, spm-hh or spm-vv",
          false},
-        {"materials", DB_INPUT, &t->materials, 0, 0, "FILE",
+        {"materials", HS_INPUT, &t->materials, 0, 0, "FILE",
          "surfaces by name, in the form that `landmass-target materials` prints", false},
     };
     setup_model_options(t, o);
     memcpy(o + SETUP_MODEL_OPTIONS, options, sizeof options);
 }
 
-void nm_chip_options(struct nm_settings *s, struct db_option *o)
+void nm_chip_options(struct nm_settings *s, struct hs_option *o)
 {
-    const struct db_option options[NM_CHIP_OPTIONS] = {
-        {"chips", DB_INPUT, &s->chips, 0, 0, "FOLDER|LIST",
+    const struct hs_option options[NM_CHIP_OPTIONS] = {
+        {"chips", HS_INPUT, &s->chips, 0, 0, "FOLDER|LIST",
          "raw MSTAR, CSV, PNG, JPEG or TIFF files: a folder of them, or a list of lines\n"
          "FILE [AZIMUTH DEPRESSION [SHIFT_X SHIFT_Y [GAIN [training|validation]]]]",
          true},
-        {"gain", DB_REAL, &s->gain, 0, 1e12, "K",
+        {"gain", HS_REAL, &s->gain, 0, 1e12, "K",
          "calibrates amplitudes, where a list does not; 0: each chip by its clutter", false},
-        {"clutter", DB_REAL, &s->calibration.clutter, 1e-6, 1, "A",
+        {"clutter", HS_REAL, &s->calibration.clutter, 1e-6, 1, "A",
          "mean amplitude of the ground about the target in a calibrated chip", false},
-        {"normalised", DB_FLAG, &s->calibration.is_normalised, 0, 0, NULL,
+        {"normalised", HS_FLAG, &s->calibration.is_normalised, 0, 0, NULL,
          "the chips have been through tanh already, (12)", false},
-        {"near-on-top", DB_FLAG, &s->calibration.is_near_on_top, 0, 0, NULL,
+        {"near-on-top", HS_FLAG, &s->calibration.is_near_on_top, 0, 0, NULL,
          "the uppermost row is nearest to the radar; in MSTAR the lowest is", false},
-        {"azimuth-left", DB_FLAG, &s->calibration.is_counted_left, 0, 0, NULL,
+        {"azimuth-left", HS_FLAG, &s->calibration.is_counted_left, 0, 0, NULL,
          "the collection counts azimuths to the left; here the radar goes round to the right",
          false},
-        {"azimuth-turn", DB_REAL, &s->calibration.turn_deg, -360, 360, "DEG",
+        {"azimuth-turn", HS_REAL, &s->calibration.turn_deg, -360, 360, "DEG",
          "is added to the collection's azimuths; here 0 is before the nose", false},
-        {"share", DB_REAL, &s->share, 0, 1, "P",
+        {"share", HS_REAL, &s->share, 0, 1, "P",
          "of the chips for training, where a list does not say; the others validate", false},
     };
     memcpy(o, options, sizeof options);
 }
 
-void nm_train_options(struct nm_settings *s, struct db_option *o)
+void nm_train_options(struct nm_settings *s, struct hs_option *o)
 {
-    const struct db_option options[NM_TRAIN_OPTIONS] = {
-        {"architecture", DB_TEXT, &s->architecture, 0, 0, "EP1..EP8",
+    const struct hs_option options[NM_TRAIN_OPTIONS] = {
+        {"architecture", HS_TEXT, &s->architecture, 0, 0, "EP1..EP8",
          "Tables III and IV; default EP8: a network for each direction, 16-32-64-32-32-1", false},
-        {"loss", DB_TEXT, &s->loss, 0, 0, "mse|mae", "(14), the default, or (13)", false},
-        {"method", DB_TEXT, &s->method, 0, 0, "adam|sgd", "of descent; default adam", false},
-        {"rate", DB_REAL, &s->rate, 1e-9, 1e3, "R", "of the reflection networks", false},
-        {"pix-rate", DB_REAL, &s->pix_rate, 1e-9, 1e3, "R", "of the pixels' kernels", false},
-        {"momentum", DB_REAL, &s->momentum, 0, 0.999, "M", "of sgd", false},
-        {"batch", DB_INTEGER, &s->batch, 1, 4096, "N", "chips between two changes", false},
-        {"pretrain", DB_INTEGER, &s->pretrain, 0, 1000, "N",
+        {"loss", HS_TEXT, &s->loss, 0, 0, "mse|mae", "(14), the default, or (13)", false},
+        {"method", HS_TEXT, &s->method, 0, 0, "adam|sgd", "of descent; default adam", false},
+        {"rate", HS_REAL, &s->rate, 1e-9, 1e3, "R", "of the reflection networks", false},
+        {"pix-rate", HS_REAL, &s->pix_rate, 1e-9, 1e3, "R", "of the pixels' kernels", false},
+        {"momentum", HS_REAL, &s->momentum, 0, 0.999, "M", "of sgd", false},
+        {"batch", HS_INTEGER, &s->batch, 1, 4096, "N", "chips between two changes", false},
+        {"pretrain", HS_INTEGER, &s->pretrain, 0, 1000, "N",
          "epochs on the simulator's own picture", false},
-        {"epochs", DB_INTEGER, &s->epochs, 0, 3000, "N",
+        {"epochs", HS_INTEGER, &s->epochs, 0, 3000, "N",
          "on real chips, with the fixed impulse response", false},
-        {"pix-epochs", DB_INTEGER, &s->pix_epochs, 0, 3000, "N",
+        {"pix-epochs", HS_INTEGER, &s->pix_epochs, 0, 3000, "N",
          "of the trainable kernels at the end, the reflection networks frozen", false},
-        {"reach", DB_INTEGER, &s->reach_px, 0, 64, "PX",
+        {"reach", HS_INTEGER, &s->reach_px, 0, 64, "PX",
          "how far registration looks from the expected place; 0: no registration", false},
-        {"seed", DB_INTEGER, &s->seed, 0, 1e15, "N", "of everything drawn by lot", false},
+        {"seed", HS_INTEGER, &s->seed, 0, 1e15, "N", "of everything drawn by lot", false},
     };
     memcpy(o, options, sizeof options);
 }

@@ -239,7 +239,7 @@ static double apart(const struct source *a, const struct source *b, const struct
 /* Each pair is looked at where the smaller of the two lies. */
 static int terrain_overlaps_judge(const struct source *sources, int count, bool are_trusted)
 {
-    struct image_area areas[DB_LIST_MAX];
+    struct image_area areas[HS_LIST_MAX];
     for (int i = 0; i < count; i++) {
         if (resample_area(&sources[i].georef, &areas[i]) != 0) {
             areas[i] = (struct image_area){.width = 0};
@@ -278,7 +278,7 @@ static void say_heights(const struct source *sources, int count)
     }
 }
 
-int terrain_open(struct terrain *t, const struct db_list *paths,
+int terrain_open(struct terrain *t, const struct hs_list *paths,
                  const struct terrain_options *options)
 {
     *t = (struct terrain){.options = *options};

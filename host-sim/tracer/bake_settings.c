@@ -21,29 +21,29 @@ struct bake_settings bake_settings_default(double gain_db)
 
 void bake_settings_free(struct bake_settings *s)
 {
-    db_list_free(&s->depressions);
+    hs_list_free(&s->depressions);
 }
 
-void bake_options(struct bake_settings *s, struct db_option *o)
+void bake_options(struct bake_settings *s, struct hs_option *o)
 {
-    const struct db_option options[BAKE_OPTIONS] = {
-        {"out", DB_OUTPUT, &s->out, 0, 0, "FILE.sig", "the signature", true},
-        {"name", DB_TEXT, &s->name, 0, 0, "NAME",
+    const struct hs_option options[BAKE_OPTIONS] = {
+        {"out", HS_OUTPUT, &s->out, 0, 0, "FILE.sig", "the signature", true},
+        {"name", HS_TEXT, &s->name, 0, 0, "NAME",
          "of the signature, up to 16 letters; left out: that of the file", false},
-        {"aspects", DB_INTEGER, &s->aspects, 1, LM_SIGNATURE_ASPECTS_MAX, "N",
+        {"aspects", HS_INTEGER, &s->aspects, 1, LM_SIGNATURE_ASPECTS_MAX, "N",
          "from how many sides, evenly around", false},
-        {"depressions", DB_LIST, &s->depressions, 0, 0, "DEG,DEG...",
+        {"depressions", HS_LIST, &s->depressions, 0, 0, "DEG,DEG...",
          "of the line of sight below the horizon, up to 8, rising, each 1 to 89; left out:\n"
          "5,10,15,20,30,45",
          false},
-        {"pixel", DB_REAL, &s->pixel_m, 0, LM_SIGNATURE_PIXEL_MAX_MM / 1000.0, "M",
+        {"pixel", HS_REAL, &s->pixel_m, 0, LM_SIGNATURE_PIXEL_MAX_MM / 1000.0, "M",
          "of the chips, 64 either way; 0: the smallest that hold the model and its shadow", false},
-        {"gain", DB_REAL, &s->gain_db, -100, 100, "DB", "of cross sections over what is traced",
+        {"gain", HS_REAL, &s->gain_db, -100, 100, "DB", "of cross sections over what is traced",
          false},
-        {"mean", DB_REAL, &s->mean_dbsm, -80, 80, "DBSM",
+        {"mean", HS_REAL, &s->mean_dbsm, -80, 80, "DBSM",
          "in place of --gain: what the model's cross section shall be, as a mean over all looks",
          false},
-        {"sheet", DB_OUTPUT, &s->sheet, 0, 0, "FILE.png",
+        {"sheet", HS_OUTPUT, &s->sheet, 0, 0, "FILE.png",
          "chips to look at: a row for each depression", false},
     };
     memcpy(o, options, sizeof options);

@@ -33,17 +33,17 @@ struct setup setup_default(void)
     };
 }
 
-void setup_model_options(struct setup *s, struct db_option *o)
+void setup_model_options(struct setup *s, struct hs_option *o)
 {
-    const struct db_option options[SETUP_MODEL_OPTIONS] = {
-        {"model", DB_INPUT, &s->model, 0, 0, "NAME|FILE.obj",
+    const struct hs_option options[SETUP_MODEL_OPTIONS] = {
+        {"model", HS_INPUT, &s->model, 0, 0, "NAME|FILE.obj",
          "a built-in model (see `landmass-target model --help`) or a Wavefront OBJ file", true},
-        {"up", DB_TEXT, &s->up, 0, 0, "y|z",
+        {"up", HS_TEXT, &s->up, 0, 0, "y|z",
          "which axis of FILE.obj points up; default y, and x ahead in either case", false},
-        {"scale", DB_REAL, &s->scale, 1e-4, 1e4, "K", "metres for a unit of FILE.obj", false},
-        {"turn", DB_REAL, &s->turn_deg, -360, 360, "DEG",
+        {"scale", HS_REAL, &s->scale, 1e-4, 1e4, "K", "metres for a unit of FILE.obj", false},
+        {"turn", HS_REAL, &s->turn_deg, -360, 360, "DEG",
          "turn FILE.obj to the left, so that its nose points along x", false},
-        {"as-is", DB_FLAG, &s->is_as_is, 0, 0, NULL,
+        {"as-is", HS_FLAG, &s->is_as_is, 0, 0, NULL,
          "take a model that is open, turned or degenerate: triangles without area are\n"
          "dropped, and both sides of all others reflect",
          false},
@@ -51,64 +51,64 @@ void setup_model_options(struct setup *s, struct db_option *o)
     memcpy(o, options, sizeof options);
 }
 
-void setup_ray_options(struct setup *s, struct db_option *o)
+void setup_ray_options(struct setup *s, struct hs_option *o)
 {
-    const struct db_option options[SETUP_RAY_OPTIONS] = {
-        {"wavelength", DB_REAL, &s->wavelength_m, 0.001, 10, "M", "of the radar", false},
-        {"rays", DB_INTEGER, &s->rays_per_cell, 1, 16, "N",
+    const struct hs_option options[SETUP_RAY_OPTIONS] = {
+        {"wavelength", HS_REAL, &s->wavelength_m, 0.001, 10, "M", "of the radar", false},
+        {"rays", HS_INTEGER, &s->rays_per_cell, 1, 16, "N",
          "N x N of them meet a cell of level "
          "ground",
          false},
-        {"bounces", DB_INTEGER, &s->bounces, 1, TRACE_BOUNCES_MAX, "N", "reflections followed",
+        {"bounces", HS_INTEGER, &s->bounces, 1, TRACE_BOUNCES_MAX, "N", "reflections followed",
          false},
-        {"threads", DB_INTEGER, &s->threads, 1, 64, "N", "the result does not depend on it", false},
+        {"threads", HS_INTEGER, &s->threads, 1, 64, "N", "the result does not depend on it", false},
     };
     memcpy(o, options, sizeof options);
 }
 
-void setup_trace_options(struct setup *s, struct db_option *o)
+void setup_trace_options(struct setup *s, struct hs_option *o)
 {
-    const struct db_option options[SETUP_TRACE_OPTIONS - SETUP_RAY_OPTIONS] = {
-        {"depression", DB_REAL, &s->depression_deg, 1, 89, "DEG",
+    const struct hs_option options[SETUP_TRACE_OPTIONS - SETUP_RAY_OPTIONS] = {
+        {"depression", HS_REAL, &s->depression_deg, 1, 89, "DEG",
          "of the line of sight below the horizon", false},
-        {"cell", DB_REAL, &s->cell_m, 0.001, 1000, "M",
+        {"cell", HS_REAL, &s->cell_m, 0.001, 1000, "M",
          "side of the cells, slant range and across, in which echoes are added up", false},
-        {"cells", DB_INTEGER, &s->cells, 2, TRACE_CELLS_MAX, "N", "of the picture, either way",
+        {"cells", HS_INTEGER, &s->cells, 2, TRACE_CELLS_MAX, "N", "of the picture, either way",
          false},
-        {"no-ground", DB_FLAG, &s->has_no_ground, 0, 0, NULL, "the model floats in empty space",
+        {"no-ground", HS_FLAG, &s->has_no_ground, 0, 0, NULL, "the model floats in empty space",
          false},
     };
     memcpy(o, options, sizeof options);
     setup_ray_options(s, o + SETUP_TRACE_OPTIONS - SETUP_RAY_OPTIONS);
 }
 
-void setup_law_options(struct setup *s, struct db_option *o)
+void setup_law_options(struct setup *s, struct hs_option *o)
 {
-    const struct db_option options[SETUP_LAW_OPTIONS] = {
-        {"law", DB_TEXT, &s->law, 0, 0, "NAME",
+    const struct hs_option options[SETUP_LAW_OPTIONS] = {
+        {"law", HS_TEXT, &s->law, 0, 0, "NAME",
          "of reflection: raysar (default), fresnel-hh, fresnel-vv, spm-hh or spm-vv", false},
-        {"materials", DB_INPUT, &s->materials, 0, 0, "FILE",
+        {"materials", HS_INPUT, &s->materials, 0, 0, "FILE",
          "surfaces by name, in the form that `landmass-target materials` prints", false},
     };
     memcpy(o, options, sizeof options);
 }
 
-void setup_chip_options(struct setup *s, struct db_option *o)
+void setup_chip_options(struct setup *s, struct hs_option *o)
 {
-    const struct db_option options[SETUP_CHIP_OPTIONS - SETUP_LAW_OPTIONS] = {
-        {"resolution", DB_REAL, &s->resolution_m, 0.001, 1000, "M",
+    const struct hs_option options[SETUP_CHIP_OPTIONS - SETUP_LAW_OPTIONS] = {
+        {"resolution", HS_REAL, &s->resolution_m, 0.001, 1000, "M",
          "of the radar, between -3 dB points", false},
-        {"pixel", DB_INTEGER, &s->ratio, 1, 16, "N", "cells a pixel, either way", false},
-        {"looks", DB_INTEGER, &s->looks, 0, PIX_LOOKS_MAX, "N", "of the speckle; 0: none", false},
-        {"seed", DB_INTEGER, &s->seed, 0, 1e15, "N", "of the speckle", false},
-        {"range-db", DB_REAL, &s->range_db, 1, 200, "DB", "from the brightest pixel to black",
+        {"pixel", HS_INTEGER, &s->ratio, 1, 16, "N", "cells a pixel, either way", false},
+        {"looks", HS_INTEGER, &s->looks, 0, PIX_LOOKS_MAX, "N", "of the speckle; 0: none", false},
+        {"seed", HS_INTEGER, &s->seed, 0, 1e15, "N", "of the speckle", false},
+        {"range-db", HS_REAL, &s->range_db, 1, 200, "DB", "from the brightest pixel to black",
          false},
     };
     setup_law_options(s, o);
     memcpy(o + SETUP_LAW_OPTIONS, options, sizeof options);
 }
 
-void setup_options(struct setup *s, struct db_option *o)
+void setup_options(struct setup *s, struct hs_option *o)
 {
     setup_model_options(s, o);
     setup_trace_options(s, o + SETUP_MODEL_OPTIONS);

@@ -88,26 +88,26 @@ static int find_profile(struct command *c)
     return hs_error(c->profile_name, names, "there is no such profile");
 }
 
-static bool read_options(struct command *c, const struct db_usage *usage, int argc, char **argv,
+static bool read_options(struct command *c, const struct hs_usage *usage, int argc, char **argv,
                          int *exit_code)
 {
-    const struct db_option options[] = {
-        {"profile", DB_TEXT, &c->profile_name, 0, 0, "NAME",
+    const struct hs_option options[] = {
+        {"profile", HS_TEXT, &c->profile_name, 0, 0, "NAME",
          "canas17 (left out), xcsoar, or generic: the one that was built in from a text table",
          false},
-        {"table", DB_INPUT, &c->table_path, 0, 0, "FILE",
+        {"table", HS_INPUT, &c->table_path, 0, 0, "FILE",
          "a text table instead of a built-in profile; docs/bus.md explains it", false},
-        {"out", DB_OUTPUT, &c->out_path, 0, 0, "FILE",
+        {"out", HS_OUTPUT, &c->out_path, 0, 0, "FILE",
          "where the text goes; left out: standard output", false},
-        {"LOG", DB_INPUT_ARGUMENT, &c->log_path, 0, 0, NULL,
+        {"LOG", HS_INPUT_ARGUMENT, &c->log_path, 0, 0, NULL,
          "of candump -L; left out: standard input", false},
     };
     const size_t count = sizeof options / sizeof options[0];
     const bool has_log = strcmp(c->name, "decode") == 0;
-    return db_options_read(usage, options, has_log ? count : count - 1, argc, argv, exit_code);
+    return hs_options_read(usage, options, has_log ? count : count - 1, argc, argv, exit_code);
 }
 
-static int run_command(const struct db_usage *usage, int argc, char **argv)
+static int run_command(const struct hs_usage *usage, int argc, char **argv)
 {
     struct command c = {.name = usage->command, .profile_name = "canas17"};
     int exit_code;
@@ -127,7 +127,7 @@ static int run_command(const struct db_usage *usage, int argc, char **argv)
     return run(&c) == 0 ? HS_EXIT_OK : HS_EXIT_FAILED;
 }
 
-static const struct db_usage usages[] = {
+static const struct hs_usage usages[] = {
     {"table", "the profile as a table of Markdown", "What the display takes from the bus."},
     {"dbc", "the profile as a .dbc file, for analysers and other tools",
      "The usual description of a CAN bus."},

@@ -20,7 +20,7 @@
 struct settings {
     const char *classes, *class_raster, *reflectivity, *heights, *targets, *detail;
     const char *map, *unknown_codes, *terrain_unit, *terrain_datum, *geoid_grid;
-    struct db_list terrain;
+    struct hs_list terrain;
     double cell_m;
     long shift0, seed;
     const char *centre, *title, *out;
@@ -30,7 +30,7 @@ struct settings {
     bool is_flat, voids_are_sea, may_cut_heights, ignores_names, trusts_inputs;
 };
 
-static const struct db_usage usage = {
+static const struct hs_usage usage = {
     "build", "make the database image from classes, reflectivity and terrain",
     "The class raster (of `landmass-db segment` or `correct`) and its reflectivity (of "
     "`landmass-db reflect`)\n"
@@ -52,77 +52,77 @@ static const struct db_usage usage = {
         name, kind, &s->field, low, high, value, help, false                                       \
     }
 
-/* Read the command line. Returns true when the build shall go on; see db_options_read. */
+/* Read the command line. Returns true when the build shall go on; see hs_options_read. */
 static bool read_settings(struct settings *s, int argc, char **argv, int *exit_code)
 {
-    const struct db_option options[] = {
-        {"classes", DB_INPUT, &s->classes, 0, 0, "FILE", "class table (docs/classifier.md)", true},
-        {"out", DB_OUTPUT, &s->out, 0, 0, "FILE.lmdb", "the image to write", true},
-        {"terrain", DB_INPUTS, &s->terrain, 0, 0, "DEM", "elevation model; may be given again",
+    const struct hs_option options[] = {
+        {"classes", HS_INPUT, &s->classes, 0, 0, "FILE", "class table (docs/classifier.md)", true},
+        {"out", HS_OUTPUT, &s->out, 0, 0, "FILE.lmdb", "the image to write", true},
+        {"terrain", HS_INPUTS, &s->terrain, 0, 0, "DEM", "elevation model; may be given again",
          false},
-        OPTION("flat", DB_FLAG, is_flat, 0, 0, NULL,
+        OPTION("flat", HS_FLAG, is_flat, 0, 0, NULL,
                "instead of terrain: all ground of the class raster lies at --sea-level; the image "
                "says so"),
-        OPTION("terrain-unit", DB_TEXT, terrain_unit, 0, 0, "UNIT",
+        OPTION("terrain-unit", HS_TEXT, terrain_unit, 0, 0, "UNIT",
                "of all terrain: m, cm, ft (international), us-ft ...; left out: as the files say, "
                "or m"),
-        OPTION("terrain-datum", DB_TEXT, terrain_datum, 0, 0, "NAME",
+        OPTION("terrain-datum", HS_TEXT, terrain_datum, 0, 0, "NAME",
                "what heights of all terrain are above: msl, egm96, egm2008 or ellipsoid;\nleft "
                "out: as the files say, or msl"),
-        OPTION("class-raster", DB_INPUT, class_raster, 0, 0, "FILE",
+        OPTION("class-raster", HS_INPUT, class_raster, 0, 0, "FILE",
                "class of each pixel, 255: no data"),
-        OPTION("class-numbers", DB_FLAG, ignores_names, 0, 0, NULL,
+        OPTION("class-numbers", HS_FLAG, ignores_names, 0, 0, NULL,
                "take the class raster's numbers for places in the class table, though it names "
                "its classes"),
-        OPTION("map", DB_INPUT, map, 0, 0, "FILE",
+        OPTION("map", HS_INPUT, map, 0, 0, "FILE",
                "the class raster is somebody's land cover: its codes, each with a class "
                "(docs/import.md)"),
-        OPTION("unknown-codes", DB_TEXT, unknown_codes, 0, 0, "NAME",
+        OPTION("unknown-codes", HS_TEXT, unknown_codes, 0, 0, "NAME",
                "class of codes that the map leaves out, or none; left out: they are an error"),
-        OPTION("reflectivity", DB_INPUT, reflectivity, 0, 0, "FILE",
+        OPTION("reflectivity", HS_INPUT, reflectivity, 0, 0, "FILE",
                "reflectivity (gamma, dB) on the class raster's grid\nleft out: drawn from "
                "the class's distribution"),
         OPTION(
-            "heights", DB_INPUT, heights, 0, 0, "FILE",
+            "heights", HS_INPUT, heights, 0, 0, "FILE",
             "metres of structures and trees above the terrain\nleft out: the class table's height"),
-        OPTION("cut-heights", DB_FLAG, may_cut_heights, 0, 0, NULL,
+        OPTION("cut-heights", HS_FLAG, may_cut_heights, 0, 0, NULL,
                "cut structures and trees above 1,000 m to that; otherwise they are an error"),
-        OPTION("targets", DB_INPUT, targets, 0, 0, "FILE",
+        OPTION("targets", HS_INPUT, targets, 0, 0, "FILE",
                "specific targets and their signatures (docs/targets.md); left out: none"),
-        OPTION("detail", DB_INPUT, detail, 0, 0, "FILE",
+        OPTION("detail", HS_INPUT, detail, 0, 0, "FILE",
                "footprints of buildings, walls, lines and masts (docs/database.md); left out: "
                "none"),
-        OPTION("cell", DB_REAL, cell_m, 0, 10000, "METRES",
+        OPTION("cell", HS_REAL, cell_m, 0, 10000, "METRES",
                "about this cell size: the nearest of 0.149 m x 2^n\n"
                "0: the pixel size of the class raster, or else of the terrain, or the next smaller "
                "cell"),
         OPTION(
-            "shift0", DB_INTEGER, shift0, 0, LM_DB_SHIFT_MAX, "N",
+            "shift0", HS_INTEGER, shift0, 0, LM_DB_SHIFT_MAX, "N",
             "cell size as a power of two (docs/FORMATS.md, 1.2): 2^N x 9.3 mm; 0: as --cell says"),
-        OPTION("centre", DB_TEXT, centre, 0, 0, "LAT,LON",
+        OPTION("centre", HS_TEXT, centre, 0, 0, "LAT,LON",
                "place worth looking at, degrees\nleft out: the middle of the class raster or the "
                "terrain"),
-        OPTION("trust-inputs", DB_FLAG, trusts_inputs, 0, 0, NULL,
+        OPTION("trust-inputs", HS_FLAG, trusts_inputs, 0, 0, NULL,
                "go on where an input looks like a mistake; the reasons are warnings then"),
-        OPTION("title", DB_TEXT, title, 0, 0, "TEXT", "up to 32 bytes"),
-        OPTION("land-class", DB_TEXT, land_class, 0, 0, "NAME",
+        OPTION("title", HS_TEXT, title, 0, 0, "TEXT", "up to 32 bytes"),
+        OPTION("land-class", HS_TEXT, land_class, 0, 0, "NAME",
                "class of ground above sea level outside the class raster (vegetation)"),
-        OPTION("water-class", DB_TEXT, water_class, 0, 0, "NAME",
+        OPTION("water-class", HS_TEXT, water_class, 0, 0, "NAME",
                "class at or below sea level outside the class raster (water)"),
-        OPTION("sea-level", DB_REAL, sea_level_m, -1000, 1000, "METRES",
+        OPTION("sea-level", HS_REAL, sea_level_m, -1000, 1000, "METRES",
                "below 0 where dry land lies below the sea"),
-        OPTION("voids-are-sea", DB_FLAG, voids_are_sea, 0, 0, NULL,
+        OPTION("voids-are-sea", HS_FLAG, voids_are_sea, 0, 0, NULL,
                "every void of the terrain is sea: for models that have no data at sea"),
-        OPTION("steep-class", DB_TEXT, steep_class, 0, 0, "NAME",
+        OPTION("steep-class", HS_TEXT, steep_class, 0, 0, "NAME",
                "class of steep ground outside the class raster; left out: none"),
-        OPTION("steep-degrees", DB_REAL, steep_degrees, 1, 89, "DEGREES", "what counts as steep"),
-        OPTION("geoid", DB_REAL, geoid_m, -200, 200, "METRES",
+        OPTION("steep-degrees", HS_REAL, steep_degrees, 1, 89, "DEGREES", "what counts as steep"),
+        OPTION("geoid", HS_REAL, geoid_m, -200, 200, "METRES",
                "height of mean sea level above the WGS-84 ellipsoid, everywhere in the image"),
-        OPTION("geoid-grid", DB_INPUT, geoid_grid, 0, 0, "egm96|FILE",
+        OPTION("geoid-grid", HS_INPUT, geoid_grid, 0, 0, "egm96|FILE",
                "its height at each place instead: egm96, which PROJ has, or a raster of metres"),
-        OPTION("seed", DB_INTEGER, seed, 0, 4294967295.0, "N", "of the reflectivity's random part"),
+        OPTION("seed", HS_INTEGER, seed, 0, 4294967295.0, "N", "of the reflectivity's random part"),
     };
-    return db_options_read(&usage, options, sizeof options / sizeof options[0], argc, argv,
+    return hs_options_read(&usage, options, sizeof options / sizeof options[0], argc, argv,
                            exit_code);
 }
 
@@ -306,7 +306,7 @@ static int make_plan(struct build_context *b, const struct settings *s)
     if (shift0 < LM_DB_SHIFT_MIN || shift0 > LM_DB_SHIFT_MAX) {
         return hs_error("--cell", "choose 0.15 to 9768", "there are no cells of %g m", s->cell_m);
     }
-    struct build_extent extents[DB_LIST_MAX + 1];
+    struct build_extent extents[HS_LIST_MAX + 1];
     const int layers = b->terrain.layer_count;
     const bool has_cover = b->cover.classes.dataset != NULL;
     int finest = LM_DB_SHIFT_MAX;
@@ -838,6 +838,6 @@ int db_cmd_build(int argc, char **argv)
                     : build(&s) != 0        ? HS_EXIT_FAILED
                                             : HS_EXIT_OK;
     }
-    db_list_free(&s.terrain);
+    hs_list_free(&s.terrain);
     return exit_code;
 }

@@ -9,7 +9,7 @@
 #include <inttypes.h>
 #include <stdio.h>
 
-static const struct db_usage usage = {
+static const struct hs_usage usage = {
     "convert", "make an image of version 3 from one of version 2",
     "Keeps every cell and post, classes, targets, signatures and manifest. Fills the borders of "
     "tiles "
@@ -72,11 +72,11 @@ int db_cmd_convert(int argc, char **argv)
 {
     const char *old = NULL, *new = NULL;
     int exit_code;
-    const struct db_option options[] = {
-        {"OLD", DB_INPUT_ARGUMENT, &old, 0, 0, NULL, "the image of version 2", true},
-        {"NEW", DB_OUTPUT_ARGUMENT, &new, 0, 0, NULL, "the image to write", true},
+    const struct hs_option options[] = {
+        {"OLD", HS_INPUT_ARGUMENT, &old, 0, 0, NULL, "the image of version 2", true},
+        {"NEW", HS_OUTPUT_ARGUMENT, &new, 0, 0, NULL, "the image to write", true},
     };
-    if (!db_options_read(&usage, options, sizeof options / sizeof options[0], argc, argv,
+    if (!hs_options_read(&usage, options, sizeof options / sizeof options[0], argc, argv,
                          &exit_code)) {
         return exit_code;
     }

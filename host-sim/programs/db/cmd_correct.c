@@ -11,7 +11,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-static const struct db_usage usage = {
+static const struct hs_usage usage = {
     .command = "correct",
     .summary = "apply manual corrections to a class raster",
     .description =
@@ -34,20 +34,20 @@ struct options {
 
 static bool read_options(struct options *o, int argc, char **argv, int *exit_code)
 {
-    const struct db_option table[] = {
-        {"class-raster", DB_INPUT, &o->class_raster, 0, 0, "FILE",
+    const struct hs_option table[] = {
+        {"class-raster", HS_INPUT, &o->class_raster, 0, 0, "FILE",
          "The class raster, from `segment`.", true},
         DB_CLASSES_OPTION(o->classes),
         DB_CLASS_NUMBERS_OPTION(o->ignores_names),
-        {"corrections", DB_INPUT, &o->corrections, 0, 0, "FILE", "Polygons of the right class.",
+        {"corrections", HS_INPUT, &o->corrections, 0, 0, "FILE", "Polygons of the right class.",
          true},
-        {"out", DB_OUTPUT, &o->out, 0, 0, "FILE", "Where the corrected class raster goes.", true},
-        {"field", DB_TEXT, &o->field, 0, 0, "NAME",
+        {"out", HS_OUTPUT, &o->out, 0, 0, "FILE", "Where the corrected class raster goes.", true},
+        {"field", HS_TEXT, &o->field, 0, 0, "NAME",
          "The polygons' field that holds the class; default `class`.", false},
-        {"map", DB_INPUT, &o->map, 0, 0, "FILE",
+        {"map", HS_INPUT, &o->map, 0, 0, "FILE",
          "Lines of `source-label = class`; without it labels must be names of classes.", false},
     };
-    return db_options_read(&usage, table, sizeof table / sizeof table[0], argc, argv, exit_code);
+    return hs_options_read(&usage, table, sizeof table / sizeof table[0], argc, argv, exit_code);
 }
 
 struct work {

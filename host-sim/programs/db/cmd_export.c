@@ -19,7 +19,7 @@
 enum { PLANES = 4, STRIP = 256, SIDE_MAX = 65536 };
 static const double no_data = -9999;
 
-static const struct db_usage usage = {
+static const struct hs_usage usage = {
     .command = "export",
     .summary = "write the planes of a database image as GeoTIFF",
     .description =
@@ -43,14 +43,14 @@ struct settings {
 static bool read_settings(struct settings *s, int argc, char **argv, const char **path,
                           int *exit_code)
 {
-    const struct db_option options[] = {
-        {"FILE", DB_INPUT_ARGUMENT, path, 0, 0, NULL, "the database image", true},
-        {"out", DB_FOLDER, &s->out, 0, 0, "FOLDER", "where the files go", true},
-        {"level", DB_INTEGER, &s->level, 0, LM_DB_LODS_MAX - 1, "L", "level of detail", false},
-        {"area", DB_TEXT, &s->area, 0, 0, "LATS,LONW,LATN,LONE",
+    const struct hs_option options[] = {
+        {"FILE", HS_INPUT_ARGUMENT, path, 0, 0, NULL, "the database image", true},
+        {"out", HS_FOLDER, &s->out, 0, 0, "FOLDER", "where the files go", true},
+        {"level", HS_INTEGER, &s->level, 0, LM_DB_LODS_MAX - 1, "L", "level of detail", false},
+        {"area", HS_TEXT, &s->area, 0, 0, "LATS,LONW,LATN,LONE",
          "degrees; left out: all of that level", false},
     };
-    return db_options_read(&usage, options, sizeof options / sizeof options[0], argc, argv,
+    return hs_options_read(&usage, options, sizeof options / sizeof options[0], argc, argv,
                            exit_code);
 }
 

@@ -14,7 +14,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-static const struct db_usage usage = {
+static const struct hs_usage usage = {
     .command = "import",
     .summary = "look straight down on a visual database",
     .description =
@@ -50,47 +50,47 @@ static const struct db_usage usage = {
 
 static bool read_options(struct import_options *o, int argc, char **argv, int *exit_code)
 {
-    const struct db_option table[] = {
-        OPTION("model", DB_INPUTS, models, "FILE",
+    const struct hs_option table[] = {
+        OPTION("model", HS_INPUTS, models, "FILE",
                "A model; may be repeated: all share one origin."),
-        OPTION("cdb", DB_TEXT, cdb, "FOLDER", "Instead: the folder of a CDB that holds Tiles."),
-        OPTION("unit", DB_TEXT, unit, "NAME",
+        OPTION("cdb", HS_TEXT, cdb, "FOLDER", "Instead: the folder of a CDB that holds Tiles."),
+        OPTION("unit", HS_TEXT, unit, "NAME",
                "m, cm, mm, ft, us-ft or in: a model's unit, where its format has none (OBJ)."),
-        OPTION("up", DB_TEXT, up, "AXIS",
+        OPTION("up", HS_TEXT, up, "AXIS",
                "y or z: what is up, where the format does not say it. With y up, north is -z."),
-        OPTION("at", DB_TEXT, at, "LAT,LON[,H]",
+        OPTION("at", HS_TEXT, at, "LAT,LON[,H]",
                "Where the models' origin lies, degrees, and its height in metres. The output is "
                "in a\n"
                "transverse Mercator projection around it."),
-        OPTION("crs", DB_TEXT, crs, "CRS",
+        OPTION("crs", HS_TEXT, crs, "CRS",
                "Instead: the models lie in this projected CRS (EPSG:28992)."),
-        OPTION("origin", DB_TEXT, origin, "X,Y[,H]",
+        OPTION("origin", HS_TEXT, origin, "X,Y[,H]",
                "Where in the CRS the models' origin lies; default 0,0."),
-        OPTION("area", DB_TEXT, area, "S,W,N,E", "Part of a CDB, degrees; default all of it."),
-        {"cell", DB_REAL, &o->cell_m, 0, 10000, "METRES",
+        OPTION("area", HS_TEXT, area, "S,W,N,E", "Part of a CDB, degrees; default all of it."),
+        {"cell", HS_REAL, &o->cell_m, 0, 10000, "METRES",
          "Length of a cell. Of a CDB: the coarsest level with pixels that short; default the "
          "finest imagery's.",
          false},
-        OPTION("classes", DB_INPUT, classes, "FILE", "The class table; needed with --map."),
-        OPTION("map", DB_INPUT, map, "FILE",
+        OPTION("classes", HS_INPUT, classes, "FILE", "The class table; needed with --map."),
+        OPTION("map", HS_INPUT, map, "FILE",
                "Lines of `material = class`. Of a CDB also base materials (BM_ASPHALT) and feature "
                "codes (AL015)."),
-        OPTION("boxes", DB_FLAG, boxes, NULL,
+        OPTION("boxes", HS_FLAG, boxes, NULL,
                "Features of a CDB whose model is missing become boxes of the size in its tables."),
-        OPTION("out-image", DB_OUTPUT, image, "FILE",
+        OPTION("out-image", HS_OUTPUT, image, "FILE",
                "Colours, 3 bands; 0 0 0 is no data, black surfaces are 1 1 1."),
-        OPTION("out-mask", DB_OUTPUT, mask, "FILE",
+        OPTION("out-mask", HS_OUTPUT, mask, "FILE",
                "Number of the picture that each cell shows, from 1, with the pictures' names; see "
                "reflect --patches."),
-        OPTION("out-classes", DB_OUTPUT, class_raster, "FILE",
+        OPTION("out-classes", HS_OUTPUT, class_raster, "FILE",
                "Class raster of the materials that --map names; the rest has no data."),
-        OPTION("out-top", DB_OUTPUT, top, "FILE", "Metres of the topmost surface; of models only."),
-        OPTION("out-terrain", DB_OUTPUT, terrain, "FILE",
+        OPTION("out-top", HS_OUTPUT, top, "FILE", "Metres of the topmost surface; of models only."),
+        OPTION("out-terrain", HS_OUTPUT, terrain, "FILE",
                "Metres of the ground, for build --terrain."),
-        OPTION("out-heights", DB_OUTPUT, heights, "FILE",
+        OPTION("out-heights", HS_OUTPUT, heights, "FILE",
                "Metres of what stands on it, for build --heights."),
     };
-    return db_options_read(&usage, table, sizeof table / sizeof table[0], argc, argv, exit_code);
+    return hs_options_read(&usage, table, sizeof table / sizeof table[0], argc, argv, exit_code);
 }
 
 int import_class_of(void *context, const char *material)
@@ -306,7 +306,7 @@ int db_cmd_import(int argc, char **argv)
     }
     free(im->terrain);
     free(im->heights);
-    db_list_free(&o.models);
+    hs_list_free(&o.models);
     free(im);
     return exit_code;
 }

@@ -13,7 +13,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 
-static const struct db_usage usage = {
+static const struct hs_usage usage = {
     "inspect", "print what a database image holds",
     "Prints header, sections, bands, levels, extents, classes, "
     "targets, signatures and manifest. `verify` checks the image's every byte."};
@@ -117,10 +117,10 @@ int db_cmd_inspect(int argc, char **argv)
 {
     const char *path = NULL;
     int exit_code;
-    const struct db_option options[] = {
-        {"FILE", DB_INPUT_ARGUMENT, &path, 0, 0, NULL, "the database image", true},
+    const struct hs_option options[] = {
+        {"FILE", HS_INPUT_ARGUMENT, &path, 0, 0, NULL, "the database image", true},
     };
-    if (!db_options_read(&usage, options, sizeof options / sizeof options[0], argc, argv,
+    if (!hs_options_read(&usage, options, sizeof options / sizeof options[0], argc, argv,
                          &exit_code)) {
         return exit_code;
     }

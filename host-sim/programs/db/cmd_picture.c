@@ -11,7 +11,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-static const struct db_usage usage = {"picture", "draw a plane of a database image",
+static const struct hs_usage usage = {"picture", "draw a plane of a database image",
                                       "North is up, and a metre is as long eastward as northward "
                                       "in the middle of the picture. Where a level has no tile\n"
                                       "the next coarser one shows through; no data is black. What "
@@ -26,24 +26,24 @@ struct settings {
 static bool read_settings(struct settings *s, int argc, char **argv, const char **path,
                           int *exit_code)
 {
-    const struct db_option options[] = {
-        {"FILE", DB_INPUT_ARGUMENT, path, 0, 0, NULL, "the database image", true},
-        {"plane", DB_TEXT, &s->plane, 0, 0, "NAME",
+    const struct hs_option options[] = {
+        {"FILE", HS_INPUT_ARGUMENT, path, 0, 0, NULL, "the database image", true},
+        {"plane", HS_TEXT, &s->plane, 0, 0, "NAME",
          "reflectivity, class, elevation, height (of structures and trees) or\nshade (hills lit "
          "from the "
          "north-west)",
          true},
-        {"out", DB_OUTPUT, &s->out, 0, 0, "P.png", "the picture", true},
-        {"level", DB_INTEGER, &s->level, -1, LM_DB_LODS_MAX - 1, "L",
+        {"out", HS_OUTPUT, &s->out, 0, 0, "P.png", "the picture", true},
+        {"level", HS_INTEGER, &s->level, -1, LM_DB_LODS_MAX - 1, "L",
          "level of detail; -1: the finest that fits the picture", false},
-        {"area", DB_TEXT, &s->area, 0, 0, "LATS,LONW,LATN,LONE",
+        {"area", HS_TEXT, &s->area, 0, 0, "LATS,LONW,LATN,LONE",
          "degrees; left out: all of that level", false},
-        {"max-size", DB_INTEGER, &s->max_size, 16, 16384, "PIXELS", "of the longer side", false},
-        {"black", DB_REAL, &s->black, -10000, 10000, "VALUE",
+        {"max-size", HS_INTEGER, &s->max_size, 16, 16384, "PIXELS", "of the longer side", false},
+        {"black", HS_REAL, &s->black, -10000, 10000, "VALUE",
          "dB or metres that are drawn black; equal to --white: from the picture itself", false},
-        {"white", DB_REAL, &s->white, -10000, 10000, "VALUE", "likewise white", false},
+        {"white", HS_REAL, &s->white, -10000, 10000, "VALUE", "likewise white", false},
     };
-    return db_options_read(&usage, options, sizeof options / sizeof options[0], argc, argv,
+    return hs_options_read(&usage, options, sizeof options / sizeof options[0], argc, argv,
                            exit_code);
 }
 

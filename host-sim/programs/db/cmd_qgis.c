@@ -10,7 +10,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-static const struct db_usage usage = {
+static const struct hs_usage usage = {
     .command = "qgis",
     .summary = "make a QGIS project to draw exemplars and corrections in",
     .description =
@@ -37,17 +37,17 @@ struct options {
 
 static bool read_options(struct options *o, int argc, char **argv, int *exit_code)
 {
-    const struct db_option table[] = {
+    const struct hs_option table[] = {
         DB_IMAGE_OPTIONS(&o->image),
         DB_CLASSES_OPTION(o->classes),
-        {"class-raster", DB_INPUT, &o->class_raster, 0, 0, "FILE",
+        {"class-raster", HS_INPUT, &o->class_raster, 0, 0, "FILE",
          "The class raster, from `segment` or `correct`, to be corrected.", false},
-        {"out", DB_FOLDER, &o->out, 0, 0, "FOLDER", "Where the project and its layers go.", true},
+        {"out", HS_FOLDER, &o->out, 0, 0, "FOLDER", "Where the project and its layers go.", true},
     };
-    return db_options_read(&usage, table, sizeof table / sizeof table[0], argc, argv, exit_code);
+    return hs_options_read(&usage, table, sizeof table / sizeof table[0], argc, argv, exit_code);
 }
 
-enum { LAYERS_MAX = 3 + DB_LIST_MAX, LOOK = 256 };
+enum { LAYERS_MAX = 3 + HS_LIST_MAX, LOOK = 256 };
 
 struct work {
     const struct options *options;
@@ -121,7 +121,7 @@ static struct db_qgis_layer *add_file(struct work *w, enum db_qgis_kind kind, co
 
 static int add_images(struct work *w)
 {
-    const struct db_list *list = &w->options->image.paths;
+    const struct hs_list *list = &w->options->image.paths;
     for (int i = 0; i < list->count; i++) {
         const GDALDatasetH file = w->image.files[i];
         const int bands = GDALGetRasterCount(file);
@@ -194,7 +194,7 @@ int db_cmd_qgis(int argc, char **argv)
         free(w->paths[i]);
     }
     db_raster_close(&w->image);
-    db_list_free(&options.image.paths);
+    hs_list_free(&options.image.paths);
     free(w);
     return exit_code;
 }

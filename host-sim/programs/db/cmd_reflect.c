@@ -17,7 +17,7 @@
 
 enum { NODATA_DB = -9999 };
 
-static const struct db_usage usage = {
+static const struct hs_usage usage = {
     .command = "reflect",
     .summary = "give each pixel its radar reflectivity",
     .description =
@@ -55,7 +55,7 @@ static const struct db_usage usage = {
 
 struct options {
     struct db_image_options image;
-    struct db_list bands;
+    struct hs_list bands;
     const char *class_raster, *classes, *method, *out, *picture, *patches, *calibrate;
     struct radar_options radar;
     long seed;
@@ -64,43 +64,43 @@ struct options {
 
 static bool read_options(struct options *o, int argc, char **argv, int *exit_code)
 {
-    struct db_option table[] = {
-        {"class-raster", DB_INPUT, &o->class_raster, 0, 0, "FILE",
+    struct hs_option table[] = {
+        {"class-raster", HS_INPUT, &o->class_raster, 0, 0, "FILE",
          "The class raster, from `segment` or `correct`.", true},
         DB_CLASSES_OPTION(o->classes),
         DB_CLASS_NUMBERS_OPTION(o->ignores_names),
-        {"out", DB_OUTPUT, &o->out, 0, 0, "FILE", "Where the reflectivity raster goes.", true},
-        {"method", DB_TEXT, &o->method, 0, 0, "NAME", "assign (default), adjust or radar.", false},
-        {"patches", DB_INPUT, &o->patches, 0, 0, "FILE",
+        {"out", HS_OUTPUT, &o->out, 0, 0, "FILE", "Where the reflectivity raster goes.", true},
+        {"method", HS_TEXT, &o->method, 0, 0, "NAME", "assign (default), adjust or radar.", false},
+        {"patches", HS_INPUT, &o->patches, 0, 0, "FILE",
          "With adjust: numbers of the pictures that the image is made of, from `import "
          "--out-mask`.",
          false},
-        {"radar", DB_INPUT, &o->radar.path, 0, 0, "FILE",
+        {"radar", HS_INPUT, &o->radar.path, 0, 0, "FILE",
          "With radar: the imagery, in any CRS and pixel size.", false},
-        {"radar-unit", DB_TEXT, &o->radar.unit, 0, 0, "NAME",
+        {"radar-unit", HS_TEXT, &o->radar.unit, 0, 0, "NAME",
          "What it holds: db or linear (power).", false},
-        {"radar-band", DB_INTEGER, &o->radar.band, 1, 64, "N",
+        {"radar-band", HS_INTEGER, &o->radar.band, 1, 64, "N",
          "Its band, from 1; vertical polarisation is that of most radars.", false},
-        {"incidence", DB_REAL, &o->radar.incidence_deg, 1, 80, "DEGREES",
+        {"incidence", HS_REAL, &o->radar.incidence_deg, 1, 80, "DEGREES",
          "It holds sigma0, seen at this angle from the vertical; default: it holds gamma0.", false},
-        {"multilook", DB_INTEGER, &o->radar.multilook, 1, 99, "N",
+        {"multilook", HS_INTEGER, &o->radar.multilook, 1, 99, "N",
          "Side, an odd number of its pixels, of the squares whose mean power is taken.", false},
-        {"calibrate", DB_TEXT, &o->calibrate, 0, 0, "NAME",
+        {"calibrate", HS_TEXT, &o->calibrate, 0, 0, "NAME",
          "class (default): each class gets the mean of the class table; scene: one number of dB "
          "for all;\n"
          "none: as it is.",
          false},
-        {"bands", DB_LIST, &o->bands, 0, 0, "N,N",
+        {"bands", HS_LIST, &o->bands, 0, 0, "N,N",
          "Bands of the image whose mean is the brightness, from 1; default all.", false},
-        {"seed", DB_INTEGER, &o->seed, 0, 2147483647, "N", "Seed of the random values.", false},
-        {"picture", DB_OUTPUT, &o->picture, 0, 0, "FILE",
+        {"seed", HS_INTEGER, &o->seed, 0, 2147483647, "N", "Seed of the random values.", false},
+        {"picture", HS_OUTPUT, &o->picture, 0, 0, "FILE",
          "Also write a PNG, black at the lowest and white at the highest mean of the classes.",
          false},
         DB_IMAGE_OPTIONS(&o->image),
     };
     enum { COUNT = sizeof table / sizeof table[0] };
     table[COUNT - 3].is_required = false; /* The image: only `adjust` looks at it. */
-    return db_options_read(&usage, table, COUNT, argc, argv, exit_code);
+    return hs_options_read(&usage, table, COUNT, argc, argv, exit_code);
 }
 
 enum method { ASSIGN, ADJUST, RADAR, METHODS };
@@ -137,7 +137,7 @@ struct work {
     struct db_reflect_law laws[DB_CLASS_MAX];
     struct db_raster classes, image;
     struct db_class_numbers numbers;
-    bool uses_band[DB_LIST_MAX * 8];
+    bool uses_band[HS_LIST_MAX * 8];
     int bands_used;
     struct db_raster_out out;
     struct db_preview preview;
@@ -150,7 +150,7 @@ struct work {
 
 static int choose_bands(struct work *w)
 {
-    const struct db_list *list = &w->options->bands;
+    const struct hs_list *list = &w->options->bands;
     const int most = (int)sizeof w->uses_band;
     if (w->image.band_count > most) {
         return hs_error(w->image.name, "name some with --bands", "has more than %d bands", most);
@@ -602,8 +602,8 @@ int db_cmd_reflect(int argc, char **argv)
     pixel_places_close(&w->places);
     db_raster_close(&w->classes);
     db_raster_close(&w->image);
-    db_list_free(&options.image.paths);
-    db_list_free(&options.bands);
+    hs_list_free(&options.image.paths);
+    hs_list_free(&options.bands);
     free(w);
     return exit_code;
 }

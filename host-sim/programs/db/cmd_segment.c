@@ -17,7 +17,7 @@
 #include <string.h>
 #include <time.h>
 
-static const struct db_usage usage = {
+static const struct hs_usage usage = {
     .command = "segment",
     .summary = "give each pixel of an image its class",
     .description =
@@ -41,44 +41,44 @@ struct options {
     struct db_exemplar_options known; /* for the report */
     const char *classes, *net, *out, *picture, *report, *reject;
     double sure;
-    struct db_list picture_bands;
+    struct hs_list picture_bands;
     long square;
 };
 
 static bool read_options(struct options *o, int argc, char **argv, int *exit_code)
 {
-    const struct db_option table[] = {
+    const struct hs_option table[] = {
         DB_IMAGE_OPTIONS(&o->image),
-        {"classes", DB_INPUT, &o->classes, 0, 0, "FILE",
+        {"classes", HS_INPUT, &o->classes, 0, 0, "FILE",
          "The class table the network was trained with.", true},
-        {"net", DB_INPUT, &o->net, 0, 0, "FILE", "The network, from `landmass-db train`.", true},
-        {"out", DB_OUTPUT, &o->out, 0, 0, "FILE", "Where the class raster goes.", true},
-        {"picture", DB_OUTPUT, &o->picture, 0, 0, "FILE",
+        {"net", HS_INPUT, &o->net, 0, 0, "FILE", "The network, from `landmass-db train`.", true},
+        {"out", HS_OUTPUT, &o->out, 0, 0, "FILE", "Where the class raster goes.", true},
+        {"picture", HS_OUTPUT, &o->picture, 0, 0, "FILE",
          "Also write a PNG: the image on the left, its classes on the right; at most 1024 "
          "pixels each\n"
          "way, larger images show every n-th pixel.",
          false},
-        {"picture-bands", DB_LIST, &o->picture_bands, 0, 0, "R,G,B",
+        {"picture-bands", HS_LIST, &o->picture_bands, 0, 0, "R,G,B",
          "Bands to show as red, green and blue, from 1; default 1,2,3 of three bands, "
          "3,2,1 of more.",
          false},
-        {"reject", DB_TEXT, &o->reject, 0, 0, "CLASS",
+        {"reject", HS_TEXT, &o->reject, 0, 0, "CLASS",
          "Give this class of the table, or `nodata`, to pixels outside the range that the network "
          "was\n"
          "trained on, instead of what it says of them.",
          false},
-        {"sure", DB_REAL, &o->sure, 0.5, 0.999, "P",
+        {"sure", HS_REAL, &o->sure, 0.5, 0.999, "P",
          "With --reject: also to pixels whose class is less than so probable against the next.",
          false},
-        {"report", DB_FOLDER, &o->report, 0, 0, "FOLDER",
+        {"report", HS_FOLDER, &o->report, 0, 0, "FOLDER",
          "Write where exemplars (below) came out wrong: regions.csv, squares.csv, worst.txt, "
          "confusion.csv.",
          false},
         DB_EXEMPLAR_OPTIONS(&o->known),
-        {"square", DB_INTEGER, &o->square, 4, 4096, "N",
+        {"square", HS_INTEGER, &o->square, 4, 4096, "N",
          "Side in pixels of the squares of the report.", false},
     };
-    return db_options_read(&usage, table, sizeof table / sizeof table[0], argc, argv, exit_code);
+    return hs_options_read(&usage, table, sizeof table / sizeof table[0], argc, argv, exit_code);
 }
 
 struct work {
@@ -104,7 +104,7 @@ struct work {
 
 static int choose_bands(struct work *w)
 {
-    const struct db_list *list = &w->options->picture_bands;
+    const struct hs_list *list = &w->options->picture_bands;
     const int bands = w->image.band_count;
     w->shown_count = bands >= 3 ? 3 : 1;
     for (int i = 0; i < 3; i++) {
@@ -429,9 +429,9 @@ int db_cmd_segment(int argc, char **argv)
     db_raster_close(&w->image);
     db_apply_free(&w->applied);
     db_net_free(&w->net);
-    db_list_free(&options.image.paths);
-    db_list_free(&options.picture_bands);
-    db_list_free(&options.known.ignore);
+    hs_list_free(&options.image.paths);
+    hs_list_free(&options.picture_bands);
+    hs_list_free(&options.known.ignore);
     free(w);
     return exit_code;
 }

@@ -14,7 +14,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-static const struct db_usage usage = {
+static const struct hs_usage usage = {
     .command = "train",
     .summary = "learn the classes of an image from exemplar pixels",
     .description =
@@ -41,7 +41,7 @@ struct options {
     struct db_exemplar_options known;
     const char *classes, *net, *report, *split_out, *hold_out;
     const char *loss, *unit;
-    struct db_list hidden, priors;
+    struct hs_list hidden, priors;
     long context, per_class, members, epochs, patience, redraws, batch, seed;
     double rate, momentum, decay, noise, goal, validate, thin;
 };
@@ -66,80 +66,80 @@ static const struct options defaults = {
 
 static bool read_options(struct options *o, int argc, char **argv, int *exit_code)
 {
-    const struct db_option table[] = {
+    const struct hs_option table[] = {
         DB_IMAGE_OPTIONS(&o->image),
         DB_CLASSES_OPTION(o->classes),
-        {"net", DB_OUTPUT, &o->net, 0, 0, "FILE", "Where the trained network goes.", true},
+        {"net", HS_OUTPUT, &o->net, 0, 0, "FILE", "Where the trained network goes.", true},
         DB_EXEMPLAR_OPTIONS(&o->known),
-        {"hold-out", DB_TEXT, &o->hold_out, 0, 0, "HOW:PART",
+        {"hold-out", HS_TEXT, &o->hold_out, 0, 0, "HOW:PART",
          "Keep exemplars to judge by: `polygons:0.3` whole polygons of each class, "
          "`pixels:0.3` pixels\n"
          "at random (only for comparison with others: it flatters).",
          false},
-        {"report", DB_FOLDER, &o->report, 0, 0, "FOLDER",
+        {"report", HS_FOLDER, &o->report, 0, 0, "FOLDER",
          "Write confusion matrices, recognition by polygon and by square, and the error curve "
          "there.",
          false},
-        {"split-out", DB_OUTPUT, &o->split_out, 0, 0, "FILE",
+        {"split-out", HS_OUTPUT, &o->split_out, 0, 0, "FILE",
          "Write each exemplar with its part (train or held-out) and inputs as CSV, for other "
          "programs.",
          false},
-        {"per-class", DB_INTEGER, &o->per_class, 10, 1e7, "N",
+        {"per-class", HS_INTEGER, &o->per_class, 10, 1e7, "N",
          "Exemplars of each class at most, drawn evenly from all its pixels.", false},
-        {"context", DB_INTEGER, &o->context, 1, DB_CONTEXT_MAX, "N",
+        {"context", HS_INTEGER, &o->context, 1, DB_CONTEXT_MAX, "N",
          "Odd side of a window whose mean and standard deviation of each band are further "
          "inputs;\n"
          "1 for the pixel's own bands only, as in Heaton.",
          false},
-        {"hidden", DB_LIST, &o->hidden, 0, 0, "N,..",
+        {"hidden", HS_LIST, &o->hidden, 0, 0, "N,..",
          "Units of each hidden layer, 1 to 4 layers. Default: one layer of inputs x outputs, more "
          "than\n"
          "three times the inputs, 8..128.",
          false},
-        {"priors", DB_LIST, &o->priors, 0, 0, "HOW",
+        {"priors", HS_LIST, &o->priors, 0, 0, "HOW",
          "How often the network is to expect each class: `exemplars`, as often as it has exemplar "
          "pixels\n"
          "(default with --labels); `equal` (default with --exemplars); or shares, NAME=SHARE,.. "
          "of every class.",
          false},
-        {"unit", DB_TEXT, &o->unit, 0, 0, "KIND", "Hidden units: tanh (default) or sigmoid.",
+        {"unit", HS_TEXT, &o->unit, 0, 0, "KIND", "Hidden units: tanh (default) or sigmoid.",
          false},
-        {"loss", DB_TEXT, &o->loss, 0, 0, "KIND",
+        {"loss", HS_TEXT, &o->loss, 0, 0, "KIND",
          "square (default): mean-square error, as in Heaton; or cross-entropy.", false},
-        {"committee", DB_INTEGER, &o->members, 1, DB_MEMBERS_MAX, "N",
+        {"committee", HS_INTEGER, &o->members, 1, DB_MEMBERS_MAX, "N",
          "Networks trained from different seeds whose outputs are added; segmenting slows "
          "as much.",
          false},
-        {"goal", DB_REAL, &o->goal, 0, 1.01, "X",
+        {"goal", HS_REAL, &o->goal, 0, 1.01, "X",
          "Part of the exemplars, by the priors, that must be recognised: a plateau below it is "
          "taken\n"
          "for a local minimum.",
          false},
-        {"epochs", DB_INTEGER, &o->epochs, 1, DB_EPOCHS_MAX, "N", "Stop after so many rounds.",
+        {"epochs", HS_INTEGER, &o->epochs, 1, DB_EPOCHS_MAX, "N", "Stop after so many rounds.",
          false},
-        {"patience", DB_INTEGER, &o->patience, 1, DB_EPOCHS_MAX, "N",
+        {"patience", HS_INTEGER, &o->patience, 1, DB_EPOCHS_MAX, "N",
          "Epochs without progress that make a plateau.", false},
-        {"redraws", DB_INTEGER, &o->redraws, 0, DB_EPOCHS_MAX, "N",
+        {"redraws", HS_INTEGER, &o->redraws, 0, DB_EPOCHS_MAX, "N",
          "How often new random weights are tried to leave a local minimum.", false},
-        {"validate", DB_REAL, &o->validate, 0, 0.9, "X",
+        {"validate", HS_REAL, &o->validate, 0, 0.9, "X",
          "Part of the training polygons set aside to choose the best weights by.", false},
-        {"noise", DB_REAL, &o->noise, 0, 10, "X",
+        {"noise", HS_REAL, &o->noise, 0, 10, "X",
          "Standard deviation of the noise on the exemplars, in deviations of each input.", false},
-        {"rate", DB_REAL, &o->rate, 1e-6, 10, "X", "Learning rate.", false},
-        {"momentum", DB_REAL, &o->momentum, 0, 0.999, "X",
+        {"rate", HS_REAL, &o->rate, 1e-6, 10, "X", "Learning rate.", false},
+        {"momentum", HS_REAL, &o->momentum, 0, 0.999, "X",
          "Part of a change of weights that is carried on.", false},
-        {"decay", DB_REAL, &o->decay, 0, 1, "X", "Pull of the weights towards zero.", false},
-        {"batch", DB_INTEGER, &o->batch, 1, 65536, "N", "Exemplars between two changes of weights.",
+        {"decay", HS_REAL, &o->decay, 0, 1, "X", "Pull of the weights towards zero.", false},
+        {"batch", HS_INTEGER, &o->batch, 1, 65536, "N", "Exemplars between two changes of weights.",
          false},
-        {"thin", DB_REAL, &o->thin, 0, 10, "X",
+        {"thin", HS_REAL, &o->thin, 0, 10, "X",
          "Keep one of the exemplars of a class that share a cell of so many deviations in each "
          "input;\n"
          "0 (default) keeps all. It flattens what is frequent: of one band only its values are "
          "left.",
          false},
-        {"seed", DB_INTEGER, &o->seed, 0, 2147483647, "N", "Seed of everything random.", false},
+        {"seed", HS_INTEGER, &o->seed, 0, 2147483647, "N", "Seed of everything random.", false},
     };
-    return db_options_read(&usage, table, sizeof table / sizeof table[0], argc, argv, exit_code);
+    return hs_options_read(&usage, table, sizeof table / sizeof table[0], argc, argv, exit_code);
 }
 
 /* What the text options mean. */
@@ -163,7 +163,7 @@ static int read_hold_out(const struct options *o, struct choices *c)
     if (!o->hold_out) {
         return 0;
     }
-    if (db_split_word_number(o->hold_out, word, sizeof word, &c->held_out) != 0 ||
+    if (hs_split_word_number(o->hold_out, word, sizeof word, &c->held_out) != 0 ||
         !(c->held_out > 0 && c->held_out < 1) ||
         (strcmp(word, "polygons") != 0 && strcmp(word, "pixels") != 0)) {
         return usage_error("--hold-out", "needs polygons:PART or pixels:PART with PART in 0..1");
@@ -321,7 +321,7 @@ static int write_split(const struct work *w)
 /* "NAME=SHARE" of each class. */
 static int read_priors(const struct work *w, double *prior)
 {
-    const struct db_list *list = &w->options->priors;
+    const struct hs_list *list = &w->options->priors;
     if (w->choices.priors != DB_PRIORS_GIVEN) {
         return 0;
     }
@@ -554,10 +554,10 @@ int db_cmd_train(int argc, char **argv)
     db_samples_free(&w->samples);
     db_exemplars_free(&w->exemplars);
     db_raster_close(&w->image);
-    db_list_free(&options.image.paths);
-    db_list_free(&options.known.ignore);
-    db_list_free(&options.hidden);
-    db_list_free(&options.priors);
+    hs_list_free(&options.image.paths);
+    hs_list_free(&options.known.ignore);
+    hs_list_free(&options.hidden);
+    hs_list_free(&options.priors);
     free(w);
     return exit_code;
 }

@@ -13,13 +13,13 @@
 #include <string.h>
 
 struct settings {
-    struct db_list vectors;
+    struct hs_list vectors;
     const char *rules, *classes, *area, *ground, *map, *unknown_codes;
     const char *out, *heights, *detail, *package;
     double cell_m;
 };
 
-static const struct db_usage usage = {
+static const struct hs_usage usage = {
     "vectors", "make classes, heights and detail of OpenStreetMap or other vectors",
     "Buildings, roads, rails, power lines, water, coast and woods become a class raster, a raster "
     "of heights\n"
@@ -39,28 +39,28 @@ static const struct db_usage usage = {
 
 static bool read_settings(struct settings *s, int argc, char **argv, int *exit_code)
 {
-    const struct db_option options[] = {
-        {"vectors", DB_INPUTS, &s->vectors, 0, 0, "FILE", "vector file; may be given again", true},
-        {"rules", DB_INPUT, &s->rules, 0, 0, "FILE",
+    const struct hs_option options[] = {
+        {"vectors", HS_INPUTS, &s->vectors, 0, 0, "FILE", "vector file; may be given again", true},
+        {"rules", HS_INPUT, &s->rules, 0, 0, "FILE",
          "what each feature becomes (docs/FORMATS.md); classes/osm.rules for OpenStreetMap", true},
-        {"classes", DB_INPUT, &s->classes, 0, 0, "FILE", "class table (docs/classifier.md)", true},
-        {"out", DB_OUTPUT, &s->out, 0, 0, "FILE.tif", "the class raster to write", true},
-        OPTION("heights", DB_OUTPUT, heights, 0, 0, "FILE.tif", "heights to write"),
-        OPTION("detail", DB_OUTPUT, detail, 0, 0, "FILE", "detail to write (docs/database.md)"),
-        OPTION("package", DB_OUTPUT, package, 0, 0, "FILE.gpkg",
+        {"classes", HS_INPUT, &s->classes, 0, 0, "FILE", "class table (docs/classifier.md)", true},
+        {"out", HS_OUTPUT, &s->out, 0, 0, "FILE.tif", "the class raster to write", true},
+        OPTION("heights", HS_OUTPUT, heights, 0, 0, "FILE.tif", "heights to write"),
+        OPTION("detail", HS_OUTPUT, detail, 0, 0, "FILE", "detail to write (docs/database.md)"),
+        OPTION("package", HS_OUTPUT, package, 0, 0, "FILE.gpkg",
                "a GeoPackage to write, of all that was made: to look at in QGIS"),
-        OPTION("area", DB_TEXT, area, 0, 0, "S,W,N,E",
+        OPTION("area", HS_TEXT, area, 0, 0, "S,W,N,E",
                "degrees; left out: what the files say of themselves, or all of them"),
-        OPTION("cell", DB_REAL, cell_m, 0.2, 1000, "METRES", "side of a pixel (2)"),
-        OPTION("ground", DB_INPUT, ground, 0, 0, "FILE",
+        OPTION("cell", HS_REAL, cell_m, 0.2, 1000, "METRES", "side of a pixel (2)"),
+        OPTION("ground", HS_INPUT, ground, 0, 0, "FILE",
                "class raster or land cover under the vectors\nleft out: none, so that build "
                "decides by elevation"),
-        OPTION("map", DB_INPUT, map, 0, 0, "FILE",
+        OPTION("map", HS_INPUT, map, 0, 0, "FILE",
                "the ground is somebody's land cover: its codes, each with a class"),
-        OPTION("unknown-codes", DB_TEXT, unknown_codes, 0, 0, "NAME",
+        OPTION("unknown-codes", HS_TEXT, unknown_codes, 0, 0, "NAME",
                "class of codes that the map leaves out, or none; left out: they are an error"),
     };
-    return db_options_read(&usage, options, sizeof options / sizeof options[0], argc, argv,
+    return hs_options_read(&usage, options, sizeof options / sizeof options[0], argc, argv,
                            exit_code);
 }
 
@@ -78,7 +78,7 @@ struct job {
     struct db_class_table table;
     struct vector_rules rules;
     struct db_code_map codes;
-    struct vector_source sources[DB_LIST_MAX];
+    struct vector_source sources[HS_LIST_MAX];
     int source_count;
     struct vector_map map;
 };
@@ -285,6 +285,6 @@ int db_cmd_vectors(int argc, char **argv)
         vector_map_free(&j->map);
     }
     free(j);
-    db_list_free(&s.vectors);
+    hs_list_free(&s.vectors);
     return exit_code;
 }

@@ -9,7 +9,7 @@
 #include <stdio.h>
 #include <string.h>
 
-static const struct db_usage usage = {
+static const struct hs_usage usage = {
     "verify", "check every byte of a database image",
     "Checks header, sections and unused bytes, every directory entry and tile record with its "
     "checksum and its place,\n"
@@ -23,10 +23,10 @@ int db_cmd_verify(int argc, char **argv)
 {
     const char *path = NULL;
     int exit_code;
-    const struct db_option options[] = {
-        {"FILE", DB_INPUT_ARGUMENT, &path, 0, 0, NULL, "the database image", true},
+    const struct hs_option options[] = {
+        {"FILE", HS_INPUT_ARGUMENT, &path, 0, 0, NULL, "the database image", true},
     };
-    if (!db_options_read(&usage, options, sizeof options / sizeof options[0], argc, argv,
+    if (!hs_options_read(&usage, options, sizeof options / sizeof options[0], argc, argv,
                          &exit_code)) {
         return exit_code;
     }

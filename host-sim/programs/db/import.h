@@ -9,7 +9,7 @@
 #include "visual/scene.h"
 
 struct import_options {
-    struct db_list models;
+    struct hs_list models;
     const char *cdb;
     const char *unit, *up, *crs, *origin, *at, *area;
     double cell_m;

@@ -6,7 +6,7 @@
 #include "gis/raster.h"
 
 struct db_image_options {
-    struct db_list paths;
+    struct hs_list paths;
     const char *nodata; /* NULL unless given */
     bool black_is_nodata;
 };
@@ -14,7 +14,7 @@ struct db_image_options {
 /* Three entries for the table of a command. */
 #define DB_IMAGE_OPTIONS(o)                                                                        \
     {.name = "image",                                                                              \
-     .kind = DB_INPUTS,                                                                            \
+     .kind = HS_INPUTS,                                                                            \
      .target = &(o)->paths,                                                                        \
      .value_name = "FILE",                                                                         \
      .is_required = true,                                                                          \
@@ -23,26 +23,26 @@ struct db_image_options {
          "bands\n"                                                                                 \
          "of several files; all must lie on one grid."},                                           \
         {.name = "nodata",                                                                         \
-         .kind = DB_TEXT,                                                                          \
+         .kind = HS_TEXT,                                                                          \
          .target = &(o)->nodata,                                                                   \
          .value_name = "V",                                                                        \
          .help = "Value that means no data, instead of what the files declare."},                  \
     {                                                                                              \
-        .name = "black-is-nodata", .kind = DB_FLAG, .target = &(o)->black_is_nodata,               \
+        .name = "black-is-nodata", .kind = HS_FLAG, .target = &(o)->black_is_nodata,               \
         .help = "Pixels that are 0 in all bands hold no data (holes of a mosaic)."                 \
     }
 
 /* An entry for the table: the class table. `o` is a const char *. */
 #define DB_CLASSES_OPTION(o)                                                                       \
     {                                                                                              \
-        .name = "classes", .kind = DB_INPUT, .target = &(o), .value_name = "FILE",                 \
+        .name = "classes", .kind = HS_INPUT, .target = &(o), .value_name = "FILE",                 \
         .is_required = true, .help = "The class table."                                            \
     }
 
 /* An entry for the table: go by the numbers of a class raster. `o` is a bool. */
 #define DB_CLASS_NUMBERS_OPTION(o)                                                                 \
     {                                                                                              \
-        .name = "class-numbers", .kind = DB_FLAG, .target = &(o),                                  \
+        .name = "class-numbers", .kind = HS_FLAG, .target = &(o),                                  \
         .help =                                                                                    \
             "Take the class raster's numbers for places in the class table, though the raster "    \
             "names its classes."                                                                   \
@@ -52,13 +52,13 @@ struct db_image_options {
  * holds the default before. */
 struct db_exemplar_options {
     const char *polygons, *field, *labels, *map;
-    struct db_list ignore; /* labels */
+    struct hs_list ignore; /* labels */
 };
 
 /* Five entries. */
 #define DB_EXEMPLAR_OPTIONS(o)                                                                     \
     {.name = "exemplars",                                                                          \
-     .kind = DB_INPUT,                                                                             \
+     .kind = HS_INPUT,                                                                             \
      .target = &(o)->polygons,                                                                     \
      .value_name = "FILE",                                                                         \
      .help =                                                                                       \
@@ -67,12 +67,12 @@ struct db_exemplar_options {
          "Reprojected when file and image name different CRS. Pixels whose centre lies inside "    \
          "count."},                                                                                \
         {.name = "field",                                                                          \
-         .kind = DB_TEXT,                                                                          \
+         .kind = HS_TEXT,                                                                          \
          .target = &(o)->field,                                                                    \
          .value_name = "NAME",                                                                     \
          .help = "The polygons' field that holds the label; default `class`."},                    \
         {.name = "labels",                                                                         \
-         .kind = DB_INPUT,                                                                         \
+         .kind = HS_INPUT,                                                                         \
          .target = &(o)->labels,                                                                   \
          .value_name = "FILE",                                                                     \
          .help =                                                                                   \
@@ -82,7 +82,7 @@ struct db_exemplar_options {
              "one label\n"                                                                         \
              "take the place of polygons."},                                                       \
         {.name = "ignore",                                                                         \
-         .kind = DB_LIST,                                                                          \
+         .kind = HS_LIST,                                                                          \
          .target = &(o)->ignore,                                                                   \
          .value_name = "LABEL",                                                                    \
          .help =                                                                                   \
@@ -90,7 +90,7 @@ struct db_exemplar_options {
              "belong to\n"                                                                         \
              "no class, whoever else claims them. Repeat it, or separate labels by commas."},      \
     {                                                                                              \
-        .name = "map", .kind = DB_INPUT, .target = &(o)->map, .value_name = "FILE",                \
+        .name = "map", .kind = HS_INPUT, .target = &(o)->map, .value_name = "FILE",                \
         .help =                                                                                    \
             "Lines of `source-label = class`. The class `ignore` is as --ignore. Labels it "       \
             "leaves "                                                                              \

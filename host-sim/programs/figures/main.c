@@ -8,16 +8,16 @@
 #include <stddef.h>
 
 /* Draw what argv[0] names. */
-static int run(int (*draw)(const char *path), const struct db_usage *usage, int argc, char **argv)
+static int run(int (*draw)(const char *path), const struct hs_usage *usage, int argc, char **argv)
 {
     const char *path = NULL;
     int exit_code;
-    const struct db_option options[] = {
-        {"FILE.png", DB_OUTPUT_ARGUMENT, &path, 0, 0, NULL,
+    const struct hs_option options[] = {
+        {"FILE.png", HS_OUTPUT_ARGUMENT, &path, 0, 0, NULL,
          "the picture; one that stands already is replaced whole, or left alone if anything fails",
          true},
     };
-    if (!db_options_read(usage, options, sizeof options / sizeof options[0], argc, argv,
+    if (!hs_options_read(usage, options, sizeof options / sizeof options[0], argc, argv,
                          &exit_code)) {
         return exit_code;
     }
@@ -26,7 +26,7 @@ static int run(int (*draw)(const char *path), const struct db_usage *usage, int 
 
 static int run_figure1(int argc, char **argv)
 {
-    const struct db_usage usage = {
+    const struct hs_usage usage = {
         "figure1",
         "Heaton, Figure 1: nine corner reflectors seen by a high- and a low-resolution radar",
         "See docs/targets.md."};
@@ -35,7 +35,7 @@ static int run_figure1(int argc, char **argv)
 
 static int run_table1(int argc, char **argv)
 {
-    const struct db_usage usage = {
+    const struct hs_usage usage = {
         "table1",
         "Heaton, Table 1: the lobes of flat plates, one way as printed and two ways as used",
         "See docs/targets.md."};

@@ -99,7 +99,7 @@ static const char *take_begin(void *context, const char *text)
     return c->has_begin ? NULL : "needs a time such as 2020-06-25T08:23:06Z";
 }
 
-static const struct db_usage usage = {
+static const struct hs_usage usage = {
     "", "turn a flight into traffic of the avionics bus",
     "Write a log of CANaerospace 1.7 frames, as candump -L writes it. The flight is a TRACK, a "
     "--circle or a --straight line: exactly one of them.\n"
@@ -130,85 +130,85 @@ struct raw {
 
 static bool read_table(struct command *c, struct raw *raw, int argc, char **argv, int *exit_code)
 {
-    struct db_taker circle = {take_circle, c}, straight = {take_straight, c},
+    struct hs_taker circle = {take_circle, c}, straight = {take_straight, c},
                     interface = {take_interface, c}, begin = {take_begin, c}, rain = {take_rain, c},
                     jammer = {take_jammer, c};
-    const struct db_option options[] = {
-        {"TRACK", DB_INPUT_ARGUMENT, &c->track_path, 0, 0, NULL,
+    const struct hs_option options[] = {
+        {"TRACK", HS_INPUT_ARGUMENT, &c->track_path, 0, 0, NULL,
          "a .csv, .gpx or .igc file, plain or .gz; - is standard input", false},
-        {"format", DB_CHOICE, &raw->format, 0, 0, "csv|gpx|igc",
+        {"format", HS_CHOICE, &raw->format, 0, 0, "csv|gpx|igc",
          "of the track, when the name of the file does not tell", false},
-        {"strict", DB_FLAG, &c->is_strict, 0, 0, NULL,
+        {"strict", HS_FLAG, &c->is_strict, 0, 0, NULL,
          "stop at the first line that cannot be used; otherwise such lines are left out, counted "
          "and reported",
          false},
-        {"speed", DB_REAL, &c->speed_ms, 1, 10000, "MS",
+        {"speed", HS_REAL, &c->speed_ms, 1, 10000, "MS",
          "fly the points of a route or a track at this speed, with banked turns; times in the file "
          "are not used",
          false},
-        {"circle", DB_TAKER, &circle, 0, 0, "LAT,LON,RADIUS_M,HEIGHT_M,SPEED_MS[,START_DEG]",
+        {"circle", HS_TAKER, &circle, 0, 0, "LAT,LON,RADIUS_M,HEIGHT_M,SPEED_MS[,START_DEG]",
          "fly a banked circle round LAT,LON (degrees), clockwise, or to the left for a negative "
          "radius, beginning START_DEG from north",
          false},
-        {"straight", DB_TAKER, &straight, 0, 0, "LAT,LON,HEADING_DEG,HEIGHT_M,SPEED_MS",
+        {"straight", HS_TAKER, &straight, 0, 0, "LAT,LON,HEADING_DEG,HEIGHT_M,SPEED_MS",
          "fly the geodesic that leaves LAT,LON in the direction HEADING_DEG", false},
-        {"What is sent", DB_HEADING, NULL, 0, 0, NULL, "", false},
-        {"out", DB_OUTPUT, &c->out_path, 0, 0, "FILE",
+        {"What is sent", HS_HEADING, NULL, 0, 0, NULL, "", false},
+        {"out", HS_OUTPUT, &c->out_path, 0, 0, "FILE",
          "where the log goes; left out: standard output", false},
-        {"iface", DB_TAKER, &interface, 0, 0, "NAME", "interface named in the log (can0)", false},
-        {"position", DB_CHOICE, &raw->position, 0, 0, "double|float|long",
+        {"iface", HS_TAKER, &interface, 0, 0, "NAME", "interface named in the log (can0)", false},
+        {"position", HS_CHOICE, &raw->position, 0, 0, "double|float|long",
          "latitude and longitude as pairs of DOUBLEH and DOUBLEL, as FLOAT, or as LONG of 1e-7 "
          "degree",
          false},
-        {"rate-scale", DB_REAL, &c->send.rate_scale, NAV_RATE_SCALE_MIN, NAV_RATE_SCALE_MAX, "X",
+        {"rate-scale", HS_REAL, &c->send.rate_scale, NAV_RATE_SCALE_MIN, NAV_RATE_SCALE_MAX, "X",
          "multiply every rate; 1: attitude 80 Hz, positions and speeds 10 Hz, time and date 1 Hz",
          false},
-        {"start", DB_REAL, &c->start_s, 0, 1e9, "S", "begin S seconds after the first fix", false},
-        {"seconds", DB_REAL, &raw->seconds, 0.0125, 1e9, "S",
+        {"start", HS_REAL, &c->start_s, 0, 1e9, "S", "begin S seconds after the first fix", false},
+        {"seconds", HS_REAL, &raw->seconds, 0.0125, 1e9, "S",
          "send S seconds; left out: the whole track, or 60 s of a --circle or --straight line",
          false},
-        {"begin", DB_TAKER, &begin, 0, 0, "TIME",
+        {"begin", HS_TAKER, &begin, 0, 0, "TIME",
          "move the flight so that its first fix is at TIME (ISO 8601, or seconds since 1970); "
          "--circle and --straight otherwise begin at 2000-01-01T12:00:00Z",
          false},
-        {"rain", DB_TAKER, &rain, 0, 0, "LAT,LON,RADIUS_M,MM_H[,FROM_S[,UNTIL_S]]",
+        {"rain", HS_TAKER, &rain, 0, 0, "LAT,LON,RADIUS_M,MM_H[,FROM_S[,UNTIL_S]]",
          "tell of a circle of rain, 100..100000 m, 1..150 mm/h, once a second, in a part of the "
          "log; up to four",
          false},
-        {"jammer", DB_TAKER, &jammer, 0, 0, "LAT,LON,DB[,FROM_S[,UNTIL_S]]",
+        {"jammer", HS_TAKER, &jammer, 0, 0, "LAT,LON,DB[,FROM_S[,UNTIL_S]]",
          "likewise a jammer of -20..80 dB above the radar's noise, on the axis of its antenna at "
          "ten nautical miles",
          false},
-        {"weather-clear", DB_REAL, &raw->clear_s, 0, 1e9, "S",
+        {"weather-clear", HS_REAL, &raw->clear_s, 0, 1e9, "S",
          "take all of it away S seconds after the log's beginning; what is only not told any more "
          "is removed by the display after 10 s",
          false},
-        {"datum", DB_CHOICE, &raw->datum, 0, 0, "ellipsoid|msl|barometric",
+        {"datum", HS_CHOICE, &raw->datum, 0, 0, "ellipsoid|msl|barometric",
          "what heights are measured from, if the file says it wrong or not at all; they are sent "
          "as 1038, 332 or 320. Left out: as below",
          false},
-        {"qnh", DB_REAL, &c->qnh_hpa, 900, 1100, "HPA",
+        {"qnh", HS_REAL, &c->qnh_hpa, 900, 1100, "HPA",
          "correct barometric heights for this pressure at sea level; left out: 1013.25 hPa", false},
-        {"height-offset", DB_REAL, &c->height_offset_m, -10000, 10000, "M",
+        {"height-offset", HS_REAL, &c->height_offset_m, -10000, 10000, "M",
          "add M metres to every height", false},
-        {"quiet", DB_FLAG, &c->is_quiet, 0, 0, NULL, "no summary on standard error", false},
-        {"What counts as broken", DB_HEADING, NULL, 0, 0, NULL, "", false},
-        {"max-gap", DB_REAL, &raw->max_gap_s, 0.001, 1e9, "S",
+        {"quiet", HS_FLAG, &c->is_quiet, 0, 0, NULL, "no summary on standard error", false},
+        {"What counts as broken", HS_HEADING, NULL, 0, 0, NULL, "", false},
+        {"max-gap", HS_REAL, &raw->max_gap_s, 0.001, 1e9, "S",
          "a longer pause between fixes is a gap, in which the bus is silent; left out: the larger "
          "of 30 s and 3 median intervals",
          false},
-        {"max-speed", DB_REAL, &c->limits.max_speed_ms, 1, 1e9, "MS",
+        {"max-speed", HS_REAL, &c->limits.max_speed_ms, 1, 1e9, "MS",
          "a faster step between fixes is a jump and is sent as one: the position stays, then jumps "
          "when the next fix is due",
          false},
-        {"keep-repeats", DB_FLAG, &c->keeps_repeats, 0, 0, NULL,
+        {"keep-repeats", HS_FLAG, &c->keeps_repeats, 0, 0, NULL,
          "send fixes that repeat the position of the one before although the aircraft moves; "
          "otherwise they are left out and counted",
          false},
-        {"Heights", DB_HEADING, NULL, 0, 0, NULL, heights_help, false},
-        {"Columns of a CSV", DB_HEADING, NULL, 0, 0, NULL, columns_help, false},
+        {"Heights", HS_HEADING, NULL, 0, 0, NULL, heights_help, false},
+        {"Columns of a CSV", HS_HEADING, NULL, 0, 0, NULL, columns_help, false},
     };
-    return db_options_read(&usage, options, sizeof options / sizeof options[0], argc, argv,
+    return hs_options_read(&usage, options, sizeof options / sizeof options[0], argc, argv,
                            exit_code);
 }
 
@@ -223,7 +223,7 @@ bool nav_options_read(struct command *c, int argc, char **argv, int *exit_code)
         return false;
     }
     if ((c->track_path != NULL) + c->has_circle + c->has_straight != 1) {
-        *exit_code = db_options_wrong(
+        *exit_code = hs_options_wrong(
             &usage, "TRACK", "or --circle or --straight must be given, and only one of them");
         return false;
     }

@@ -9,7 +9,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-static const struct db_usage usage = {
+static const struct hs_usage usage = {
     "bake", "the signature of what was learned, for the display unit",
     "Traces the model from all sides, lets the learned networks say what each reflection returns,\n"
     "and keeps it as chips of ground pixels, with the shadow, in FILE.sig: docs/targets.md. Cells\n"
@@ -115,13 +115,13 @@ int nm_cmd_bake(int argc, char **argv)
     struct bake_settings settings = bake_settings_default(0);
     const char *training = NULL;
     enum { BAKE = 1 + SETUP_MODEL_OPTIONS, RAYS = BAKE + BAKE_OPTIONS };
-    struct db_option options[RAYS + SETUP_RAY_OPTIONS] = {
-        {"training", DB_INPUT, &training, 0, 0, "FILE", "that `train` left", true}};
+    struct hs_option options[RAYS + SETUP_RAY_OPTIONS] = {
+        {"training", HS_INPUT, &training, 0, 0, "FILE", "that `train` left", true}};
     int exit_code;
     setup_model_options(&setup, options + 1);
     bake_options(&settings, options + BAKE);
     setup_ray_options(&setup, options + RAYS);
-    if (db_options_read(&usage, options, sizeof options / sizeof options[0], argc, argv,
+    if (hs_options_read(&usage, options, sizeof options / sizeof options[0], argc, argv,
                         &exit_code)) {
         struct mesh m;
         exit_code = HS_EXIT_FAILED;

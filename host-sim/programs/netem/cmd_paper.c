@@ -10,7 +10,7 @@
 #include <string.h>
 #include <unistd.h>
 
-static const struct db_usage usage = {
+static const struct hs_usage usage = {
     "paper", "the whole experiment of the paper on the full MSTAR set",
     "Niu et al., \"A SAR target image simulation method with DNN embedded to calculate\n"
     "electromagnetic reflection\", section IV, from folders of raw MSTAR chips: SLICY with the\n"
@@ -144,25 +144,25 @@ int nm_cmd_paper(int argc, char **argv)
     struct nm_settings s = nm_settings_default();
     struct folders f = {0};
     int exit_code;
-    struct db_option options[OPTIONS] = {
-        {"slicy-15", DB_TEXT, &f.slicy_15, 0, 0, "FOLDER", "raw chips of SLICY at 15 degrees",
+    struct hs_option options[OPTIONS] = {
+        {"slicy-15", HS_TEXT, &f.slicy_15, 0, 0, "FOLDER", "raw chips of SLICY at 15 degrees",
          true},
-        {"slicy-30", DB_TEXT, &f.slicy_30, 0, 0, "FOLDER", "and at 30 degrees", true},
-        {"t72-15", DB_TEXT, &f.t72_15, 0, 0, "FOLDER", "raw chips of the T-72 at 15 degrees",
+        {"slicy-30", HS_TEXT, &f.slicy_30, 0, 0, "FOLDER", "and at 30 degrees", true},
+        {"t72-15", HS_TEXT, &f.t72_15, 0, 0, "FOLDER", "raw chips of the T-72 at 15 degrees",
          false},
-        {"t72-17", DB_TEXT, &f.t72_17, 0, 0, "FOLDER", "and at 17 degrees", false},
-        {"out", DB_FOLDER, &f.out, 0, 0, "FOLDER", "for the results", true},
-        {"all", DB_FLAG, &f.is_all, 0, 0, NULL, "train EP1 to EP8, not one architecture", false},
-        {"azimuth-left", DB_FLAG, &f.is_counted_left, 0, 0, NULL,
+        {"t72-17", HS_TEXT, &f.t72_17, 0, 0, "FOLDER", "and at 17 degrees", false},
+        {"out", HS_FOLDER, &f.out, 0, 0, "FOLDER", "for the results", true},
+        {"all", HS_FLAG, &f.is_all, 0, 0, NULL, "train EP1 to EP8, not one architecture", false},
+        {"azimuth-left", HS_FLAG, &f.is_counted_left, 0, 0, NULL,
          "MSTAR's TargetAz counts to the left; here the radar goes round to the right", false},
-        {"slicy-turn", DB_REAL, &f.slicy_turn_deg, -360, 360, "DEG",
+        {"slicy-turn", HS_REAL, &f.slicy_turn_deg, -360, 360, "DEG",
          "between SLICY's TargetAz 0 and the model's nose", false},
-        {"t72-turn", DB_REAL, &f.t72_turn_deg, -360, 360, "DEG", "the same of the T-72", false},
-        {"rays", DB_INTEGER, &s.setup.rays_per_cell, 1, 16, "N",
+        {"t72-turn", HS_REAL, &f.t72_turn_deg, -360, 360, "DEG", "the same of the T-72", false},
+        {"rays", HS_INTEGER, &s.setup.rays_per_cell, 1, 16, "N",
          "N x N of them meet a cell of level ground", false},
     };
     nm_train_options(&s, options + 10);
-    if (!db_options_read(&usage, options, OPTIONS, argc, argv, &exit_code)) {
+    if (!hs_options_read(&usage, options, OPTIONS, argc, argv, &exit_code)) {
         return exit_code;
     }
     if (!f.t72_15 != !f.t72_17) {

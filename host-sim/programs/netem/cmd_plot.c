@@ -10,7 +10,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-static const struct db_usage usage = {
+static const struct hs_usage usage = {
     "plot", "draw what was learned: loss, reflection curves, kernels",
     "Figures 20 to 23 of the paper, of the first training given: specular.png, back.png,\n"
     "kernels.png and loss.png. With several trainings loss.png shows them together, as Figures\n"
@@ -30,7 +30,7 @@ static const char *short_name(const char *path, char *name, size_t size)
     return slash ? slash + 1 : name;
 }
 
-static int plot(struct nm_training **trainings, const struct db_list *files, const char *out,
+static int plot(struct nm_training **trainings, const struct hs_list *files, const char *out,
                 int materials)
 {
     struct nm_loss_curve curves[TRAININGS_MAX];
@@ -46,7 +46,7 @@ static int plot(struct nm_training **trainings, const struct db_list *files, con
                : -1;
 }
 
-static int run(const struct db_list *files, const char *out, int materials)
+static int run(const struct hs_list *files, const char *out, int materials)
 {
     struct nm_training *trainings[TRAININGS_MAX] = {NULL};
     int count = 0, result = 0;
@@ -70,24 +70,24 @@ static int run(const struct db_list *files, const char *out, int materials)
 
 int nm_cmd_plot(int argc, char **argv)
 {
-    struct db_list files = {.count = 0};
+    struct hs_list files = {.count = 0};
     const char *out = NULL;
     long materials = 2;
     int exit_code;
-    const struct db_option options[] = {
-        {"training", DB_LIST, &files, 0, 0, "FILE,...", "that `train` left; up to 16 of them",
+    const struct hs_option options[] = {
+        {"training", HS_LIST, &files, 0, 0, "FILE,...", "that `train` left; up to 16 of them",
          true},
-        {"out", DB_FOLDER, &out, 0, 0, "FOLDER", "for the pictures", true},
-        {"materials", DB_INTEGER, &materials, 1, 8, "N", "whose curves are drawn", false},
+        {"out", HS_FOLDER, &out, 0, 0, "FOLDER", "for the pictures", true},
+        {"materials", HS_INTEGER, &materials, 1, 8, "N", "whose curves are drawn", false},
     };
     const size_t count = sizeof options / sizeof options[0];
-    if (!db_options_read(&usage, options, count, argc, argv, &exit_code)) {
-        db_list_free(&files);
+    if (!hs_options_read(&usage, options, count, argc, argv, &exit_code)) {
+        hs_list_free(&files);
         return exit_code;
     }
     const int result = files.count <= TRAININGS_MAX
                            ? run(&files, out, (int)materials)
                            : hs_error("--training", NULL, "names more than %d", TRAININGS_MAX);
-    db_list_free(&files);
+    hs_list_free(&files);
     return result == 0 ? HS_EXIT_OK : HS_EXIT_FAILED;
 }

@@ -8,7 +8,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 
-static const struct db_usage usage = {
+static const struct hs_usage usage = {
     "recover", "hide a law in made chips, learn it, and tell how well it was found",
     "Make \"real\" chips of the model by a hidden law of reflection, seen from aspects drawn by\n"
     "lot, with speckle and a hidden translation; train on a part of them without telling the\n"
@@ -215,25 +215,25 @@ int nm_cmd_recover(int argc, char **argv)
     struct hidden h = {.law = "fresnel-vv", .chips = 60, .looks = 4, .shift_px = 3, .share = 0.6};
     bool is_resumed = false;
     int exit_code;
-    struct db_option options[OPTIONS] = {
-        {"hidden-law", DB_TEXT, &h.law, 0, 0, "NAME",
+    struct hs_option options[OPTIONS] = {
+        {"hidden-law", HS_TEXT, &h.law, 0, 0, "NAME",
          "raysar, fresnel-hh, fresnel-vv (default), spm-hh or spm-vv", false},
-        {"hidden-materials", DB_INPUT, &h.materials, 0, 0, "FILE",
+        {"hidden-materials", HS_INPUT, &h.materials, 0, 0, "FILE",
          "its surfaces, in the form that `landmass-target materials` prints", false},
-        {"number", DB_INTEGER, &h.chips, 2, 10000, "N", "chips to make", false},
-        {"share", DB_REAL, &h.share, 0, 1, "P", "of them for training", false},
-        {"depression-to", DB_REAL, &h.highest_deg, 0, 89, "DEG",
+        {"number", HS_INTEGER, &h.chips, 2, 10000, "N", "chips to make", false},
+        {"share", HS_REAL, &h.share, 0, 1, "P", "of them for training", false},
+        {"depression-to", HS_REAL, &h.highest_deg, 0, 89, "DEG",
          "draw depressions by lot, from --depression to this; 0: all are the same", false},
-        {"looks", DB_INTEGER, &h.looks, 0, 64, "N", "of their speckle; 0: none", false},
-        {"shift", DB_INTEGER, &h.shift_px, 0, 20, "PX", "of the hidden translation, at most",
+        {"looks", HS_INTEGER, &h.looks, 0, 64, "N", "of their speckle; 0: none", false},
+        {"shift", HS_INTEGER, &h.shift_px, 0, 20, "PX", "of the hidden translation, at most",
          false},
-        {"out", DB_FOLDER, &h.out, 0, 0, "FOLDER", "for the results", true},
-        {"resume", DB_FLAG, &is_resumed, 0, 0, NULL, "go on where FOLDER's training stopped",
+        {"out", HS_FOLDER, &h.out, 0, 0, "FOLDER", "for the results", true},
+        {"resume", HS_FLAG, &is_resumed, 0, 0, NULL, "go on where FOLDER's training stopped",
          false},
     };
     nm_target_options(&s, options + 9);
     nm_train_options(&s, options + 9 + NM_TARGET_OPTIONS);
-    if (!db_options_read(&usage, options, OPTIONS, argc, argv, &exit_code)) {
+    if (!hs_options_read(&usage, options, OPTIONS, argc, argv, &exit_code)) {
         return exit_code;
     }
     return run(&s, &h, is_resumed) == 0 ? HS_EXIT_OK : HS_EXIT_FAILED;

@@ -10,7 +10,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 
-static const struct db_usage usage = {
+static const struct hs_usage usage = {
     "register", "find from where chips were taken that do not say so",
     "Lay the untrained simulator's pictures, from all around, over each chip; the azimuth and\n"
     "place that correlate best are written into a list that `train` and `score` take, with the\n"
@@ -223,19 +223,19 @@ int nm_cmd_register(int argc, char **argv)
 {
     struct run r = {.settings = nm_settings_default(), .views = 180, .reach_px = 12};
     int exit_code;
-    struct db_option options[OPTIONS] = {
-        {"out", DB_OUTPUT, &r.out, 0, 0, "FILE", "the list", true},
-        {"scores", DB_OUTPUT, &r.scores, 0, 0, "FILE", "how well each chip fits, as a table",
+    struct hs_option options[OPTIONS] = {
+        {"out", HS_OUTPUT, &r.out, 0, 0, "FILE", "the list", true},
+        {"scores", HS_OUTPUT, &r.scores, 0, 0, "FILE", "how well each chip fits, as a table",
          false},
-        {"views", DB_INTEGER, &r.views, 4, 3600, "N", "simulated, evenly around", false},
-        {"shift", DB_INTEGER, &r.reach_px, 0, 512, "PX",
+        {"views", HS_INTEGER, &r.views, 4, 3600, "N", "simulated, evenly around", false},
+        {"shift", HS_INTEGER, &r.reach_px, 0, 512, "PX",
          "how far from the middle of its chip a target may be", false},
-        {"in-order", DB_FLAG, &r.is_in_order, 0, 0, NULL,
+        {"in-order", HS_FLAG, &r.is_in_order, 0, 0, NULL,
          "the chips follow one another as they were taken, on circles about the target", false},
     };
     nm_target_options(&r.settings, options + 5);
     nm_chip_options(&r.settings, options + 5 + NM_TARGET_OPTIONS);
-    if (!db_options_read(&usage, options, OPTIONS, argc, argv, &exit_code)) {
+    if (!hs_options_read(&usage, options, OPTIONS, argc, argv, &exit_code)) {
         return exit_code;
     }
     if (nm_chip_list_read(&r.list, r.settings.chips) != 0) {

@@ -10,7 +10,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 
-static const struct db_usage usage = {
+static const struct hs_usage usage = {
     "response", "the simulation's impulse response and speckle beside a real radar's",
     "Focus a real phase history (the AFRL Gotcha set) under a Taylor weighting of -35 dB, cut\n"
     "through its isolated points, and lay the simulation's impulse response over each cut, cell\n"
@@ -143,11 +143,11 @@ int nm_cmd_response(int argc, char **argv)
     const char *file = NULL;
     long seed = 1;
     int exit_code;
-    const struct db_option options[] = {
-        {"history", DB_INPUT, &file, 0, 0, "FILE", "one degree of the Gotcha set, MATLAB 5", true},
-        {"seed", DB_INTEGER, &seed, 0, 1e15, "N", "of the simulated speckle", false},
+    const struct hs_option options[] = {
+        {"history", HS_INPUT, &file, 0, 0, "FILE", "one degree of the Gotcha set, MATLAB 5", true},
+        {"seed", HS_INTEGER, &seed, 0, 1e15, "N", "of the simulated speckle", false},
     };
-    if (!db_options_read(&usage, options, sizeof options / sizeof options[0], argc, argv,
+    if (!hs_options_read(&usage, options, sizeof options / sizeof options[0], argc, argv,
                          &exit_code)) {
         return exit_code;
     }

@@ -6,7 +6,7 @@
 #include <stdio.h>
 #include <string.h>
 
-static const struct db_usage usage = {
+static const struct hs_usage usage = {
     "score", "simulated chips beside real ones: MSE, SSIM, CW-SSIM and a picture",
     "Simulate each chip's aspect with what was learned and with the simulator's own law, whose\n"
     "gain is fitted on the training chips, and compare both with the real chip; CW-SSIM also\n"
@@ -45,16 +45,16 @@ int nm_cmd_score(int argc, char **argv)
     struct nm_chip_list list;
     const char *out = NULL, *training = NULL, *set = "validation";
     int exit_code;
-    struct db_option options[OPTIONS] = {
-        {"training", DB_INPUT, &training, 0, 0, "FILE", "that `train` left", true},
-        {"out", DB_FOLDER, &out, 0, 0, "FOLDER", "for the results", true},
-        {"set", DB_TEXT, &set, 0, 0, "validation|training", "which chips; default validation",
+    struct hs_option options[OPTIONS] = {
+        {"training", HS_INPUT, &training, 0, 0, "FILE", "that `train` left", true},
+        {"out", HS_FOLDER, &out, 0, 0, "FOLDER", "for the results", true},
+        {"set", HS_TEXT, &set, 0, 0, "validation|training", "which chips; default validation",
          false},
-        {"seed", DB_INTEGER, &s.seed, 0, 1e15, "N", "of the division into both", false},
+        {"seed", HS_INTEGER, &s.seed, 0, 1e15, "N", "of the division into both", false},
     };
     nm_target_options(&s, options + 4);
     nm_chip_options(&s, options + 4 + NM_TARGET_OPTIONS);
-    if (!db_options_read(&usage, options, OPTIONS, argc, argv, &exit_code)) {
+    if (!hs_options_read(&usage, options, OPTIONS, argc, argv, &exit_code)) {
         return exit_code;
     }
     if (strcmp(set, "validation") != 0 && strcmp(set, "training") != 0) {

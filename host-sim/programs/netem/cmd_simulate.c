@@ -12,7 +12,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 
-static const struct db_usage usage = {
+static const struct hs_usage usage = {
     "simulate", "chips of any aspect by what was learned",
     "Trace the model from each azimuth and make its chip with the learned networks and pixels:\n"
     "FOLDER/AZIMUTH.csv holds amplitudes, FOLDER/AZIMUTH.png the chip after tanh, 8-bit; near\n"
@@ -120,17 +120,17 @@ int nm_cmd_simulate(int argc, char **argv)
     struct nm_settings s = nm_settings_default();
     struct order o = {.views = 1, .seed = 1};
     int exit_code;
-    struct db_option options[OPTIONS] = {
-        {"training", DB_INPUT, &o.training, 0, 0, "FILE", "that `train` left", true},
-        {"out", DB_FOLDER, &o.out, 0, 0, "FOLDER", "for the chips", true},
-        {"azimuth", DB_REAL, &o.azimuth_deg, -360, 360, "DEG",
+    struct hs_option options[OPTIONS] = {
+        {"training", HS_INPUT, &o.training, 0, 0, "FILE", "that `train` left", true},
+        {"out", HS_FOLDER, &o.out, 0, 0, "FOLDER", "for the chips", true},
+        {"azimuth", HS_REAL, &o.azimuth_deg, -360, 360, "DEG",
          "of the radar as the target sees it, from its nose to the right", false},
-        {"views", DB_INTEGER, &o.views, 1, 3600, "N", "evenly around, from --azimuth on", false},
-        {"looks", DB_INTEGER, &o.looks, 0, PIX_LOOKS_MAX, "N", "of the speckle; 0: none", false},
-        {"seed", DB_INTEGER, &o.seed, 0, 1e15, "N", "of the speckle", false},
+        {"views", HS_INTEGER, &o.views, 1, 3600, "N", "evenly around, from --azimuth on", false},
+        {"looks", HS_INTEGER, &o.looks, 0, PIX_LOOKS_MAX, "N", "of the speckle; 0: none", false},
+        {"seed", HS_INTEGER, &o.seed, 0, 1e15, "N", "of the speckle", false},
     };
     nm_target_options(&s, options + 6);
-    if (!db_options_read(&usage, options, OPTIONS, argc, argv, &exit_code)) {
+    if (!hs_options_read(&usage, options, OPTIONS, argc, argv, &exit_code)) {
         return exit_code;
     }
     return run(&s, &o) == 0 ? HS_EXIT_OK : HS_EXIT_FAILED;

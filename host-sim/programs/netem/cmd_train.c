@@ -5,7 +5,7 @@
 
 #include <stdio.h>
 
-static const struct db_usage usage = {
+static const struct hs_usage usage = {
     "train", "learn the reflection of a target from real chips",
     "Trace the model from the aspect of each chip, then train the reflection networks: some\n"
     "epochs on the simulator's own picture, then on the real chips, registered by phase\n"
@@ -47,15 +47,15 @@ int nm_cmd_train(int argc, char **argv)
     const char *out = NULL;
     bool is_resumed = false;
     int exit_code;
-    struct db_option options[OPTIONS] = {
-        {"out", DB_FOLDER, &out, 0, 0, "FOLDER", "for the results", true},
-        {"resume", DB_FLAG, &is_resumed, 0, 0, NULL, "go on where FOLDER's training stopped",
+    struct hs_option options[OPTIONS] = {
+        {"out", HS_FOLDER, &out, 0, 0, "FOLDER", "for the results", true},
+        {"resume", HS_FLAG, &is_resumed, 0, 0, NULL, "go on where FOLDER's training stopped",
          false},
     };
     nm_target_options(&s, options + 2);
     nm_chip_options(&s, options + 2 + NM_TARGET_OPTIONS);
     nm_train_options(&s, options + 2 + NM_TARGET_OPTIONS + NM_CHIP_OPTIONS);
-    if (!db_options_read(&usage, options, OPTIONS, argc, argv, &exit_code)) {
+    if (!hs_options_read(&usage, options, OPTIONS, argc, argv, &exit_code)) {
         return exit_code;
     }
     if (nm_chip_list_read(&list, s.chips) != 0) {

@@ -9,7 +9,7 @@
 
 #include <stdio.h>
 
-static const struct db_usage usage = {
+static const struct hs_usage usage = {
     "classes", "rank and spread of the classes of a database beside a real radar picture",
     "Rank the classes of a database by a real radar's picture of the same ground, and show the "
     "simulated values beside the measured ones.\n"
@@ -76,17 +76,17 @@ struct files {
 
 static bool read_options(struct files *f, int argc, char **argv, int *exit_code)
 {
-    const struct db_option options[] = {
-        {"classes", DB_INPUT, &f->table, 0, 0, "FILE", "the class table of landmass-db", true},
-        {"class-raster", DB_INPUT, &f->class_raster, 0, 0, "FILE", "from landmass-db segment",
+    const struct hs_option options[] = {
+        {"classes", HS_INPUT, &f->table, 0, 0, "FILE", "the class table of landmass-db", true},
+        {"class-raster", HS_INPUT, &f->class_raster, 0, 0, "FILE", "from landmass-db segment",
          true},
-        {"reflectivity", DB_INPUT, &f->reflectivity, 0, 0, "FILE", "from landmass-db reflect, dB",
+        {"reflectivity", HS_INPUT, &f->reflectivity, 0, 0, "FILE", "from landmass-db reflect, dB",
          true},
-        {"radar", DB_INPUT, &f->radar, 0, 0, "FILE",
+        {"radar", HS_INPUT, &f->radar, 0, 0, "FILE",
          "the real radar on the same grid; its first band, dB", true},
-        {"out", DB_FOLDER, &f->out, 0, 0, "DIR", "leave classes.png there", false},
+        {"out", HS_FOLDER, &f->out, 0, 0, "DIR", "leave classes.png there", false},
     };
-    return db_options_read(&usage, options, sizeof options / sizeof options[0], argc, argv,
+    return hs_options_read(&usage, options, sizeof options / sizeof options[0], argc, argv,
                            exit_code);
 }
 

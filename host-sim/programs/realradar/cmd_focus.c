@@ -11,7 +11,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 
-static const struct db_usage usage = {
+static const struct hs_usage usage = {
     "focus", "make a picture of a real phase history; score speckle and points",
     "Make a picture of a phase history by back-projection, and print how its speckle and its "
     "points compare with theory and with the firmware's speckle.\n"
@@ -239,16 +239,16 @@ int rr_cmd_focus(int argc, char **argv)
     struct focus f = {.side_m = 100, .pixel_m = 0.2};
     const char *path = NULL, *folder = NULL;
     int exit_code;
-    const struct db_option options[] = {
-        {"FILE", DB_INPUT_ARGUMENT, &path, 0, 0, NULL,
+    const struct hs_option options[] = {
+        {"FILE", HS_INPUT_ARGUMENT, &path, 0, 0, NULL,
          "one degree of the AFRL Gotcha set (MATLAB 5: data.fp, freq, x, y, z, r0)", true},
-        {"size", DB_REAL, &f.side_m, 20, 200, "M",
+        {"size", HS_REAL, &f.side_m, 20, 200, "M",
          "side of the ground patch round the scene's centre", false},
-        {"pixel", DB_REAL, &f.pixel_m, 0.05, 1, "M", "of the picture", false},
-        {"out", DB_FOLDER, &folder, 0, 0, "DIR",
+        {"pixel", HS_REAL, &f.pixel_m, 0.05, 1, "M", "of the picture", false},
+        {"out", HS_FOLDER, &folder, 0, 0, "DIR",
          "leave picture.png there, 60 dB from black to white", false},
     };
-    if (!db_options_read(&usage, options, sizeof options / sizeof options[0], argc, argv,
+    if (!hs_options_read(&usage, options, sizeof options / sizeof options[0], argc, argv,
                          &exit_code)) {
         return exit_code;
     }

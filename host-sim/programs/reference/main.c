@@ -140,7 +140,7 @@ static double *number_value(struct request *request, const struct number *number
     return (double *)(void *)((char *)request + number->offset);
 }
 
-static const struct db_usage usages[] = {
+static const struct hs_usage usages[] = {
     {"sar", "a patch, the line of sight upwards", ""},
     {"gm", "a sector as it is sampled, seen from above",
      "The antenna is in the middle of the lower edge."},
@@ -160,45 +160,45 @@ static int mode_index(const char *name)
 }
 
 /* The options of a mode; returns how many. A number's value is its default before. */
-static size_t fill_options(struct db_option *options, struct request *request, int mode)
+static size_t fill_options(struct hs_option *options, struct request *request, int mode)
 {
     size_t count = 0;
-    options[count++] = (struct db_option){
-        "IMAGE", DB_INPUT_ARGUMENT, &request->image, 0, 0, NULL, "the database image", true};
+    options[count++] = (struct hs_option){
+        "IMAGE", HS_INPUT_ARGUMENT, &request->image, 0, 0, NULL, "the database image", true};
     for (int i = 0; i < NUMBERS; i++) {
         const struct number *n = &numbers[i];
         if (n->modes & mode) {
-            options[count++] = (struct db_option){
-                n->name, DB_REAL, number_value(request, n), n->low, n->high, "X", n->help, false};
+            options[count++] = (struct hs_option){
+                n->name, HS_REAL, number_value(request, n), n->low, n->high, "X", n->help, false};
         }
     }
-    options[count++] = (struct db_option){"exact-weights",
-                                          DB_FLAG,
+    options[count++] = (struct hs_option){"exact-weights",
+                                          HS_FLAG,
                                           &request->has_exact_weights,
                                           0,
                                           0,
                                           NULL,
                                           "do not cut the weights between posts to 8 bits",
                                           false};
-    options[count++] = (struct db_option){
-        "out", DB_OUTPUT, &request->out, 0, 0, "FILE", "the picture, a grey PNG (reference.png)",
+    options[count++] = (struct hs_option){
+        "out", HS_OUTPUT, &request->out, 0, 0, "FILE", "the picture, a grey PNG (reference.png)",
         false};
     options[count++] =
-        (struct db_option){"dump",
-                           DB_TEXT,
+        (struct hs_option){"dump",
+                           HS_TEXT,
                            &request->dump,
                            0,
                            0,
                            "FILE",
                            "every stage of every cell: CSV, or raw doubles if FILE ends in .f64",
                            false};
-    options[count++] = (struct db_option){"Columns of the dump", DB_HEADING, NULL, 0, 0, NULL,
+    options[count++] = (struct hs_option){"Columns of the dump", HS_HEADING, NULL, 0, 0, NULL,
                                           ref_dump_columns,      false};
     return count;
 }
 
 /* Whether the numbers that must be whole are, and white lies above black. */
-static bool check_numbers(struct request *request, const struct db_usage *usage, int mode,
+static bool check_numbers(struct request *request, const struct hs_usage *usage, int mode,
                           int *exit_code)
 {
     for (int i = 0; i < NUMBERS; i++) {
@@ -206,12 +206,12 @@ static bool check_numbers(struct request *request, const struct db_usage *usage,
         if (n->is_whole && (n->modes & mode) && fmod(*number_value(request, n), 1) != 0) {
             char name[64];
             snprintf(name, sizeof name, "--%s", n->name);
-            *exit_code = db_options_wrong(usage, name, "needs a whole number");
+            *exit_code = hs_options_wrong(usage, name, "needs a whole number");
             return false;
         }
     }
     if (request->params.white_db <= request->params.black_db) {
-        *exit_code = db_options_wrong(usage, "--white", "must lie above --black");
+        *exit_code = hs_options_wrong(usage, "--white", "must lie above --black");
         return false;
     }
     return true;
@@ -224,10 +224,10 @@ static bool parse(struct request *request, int mode, int argc, char **argv, int 
         double *value = number_value(request, &numbers[i]);
         *value = numbers[i].offset >= AT(params) ? *value : numbers[i].usual;
     }
-    const struct db_usage *usage = &usages[mode_index(argv[0])];
-    struct db_option options[NUMBERS + 5];
+    const struct hs_usage *usage = &usages[mode_index(argv[0])];
+    struct hs_option options[NUMBERS + 5];
     const size_t count = fill_options(options, request, mode);
-    if (!db_options_read(usage, options, count, argc, argv, exit_code) ||
+    if (!hs_options_read(usage, options, count, argc, argv, exit_code) ||
         !check_numbers(request, usage, mode, exit_code)) {
         return false;
     }

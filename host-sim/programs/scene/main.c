@@ -11,7 +11,7 @@
 #include <string.h>
 #include <sys/stat.h>
 
-static const struct db_usage usage = {
+static const struct hs_usage usage = {
     "", "invent a piece of country and write it as a database builder gets it",
     "The country is a multispectral image, terrain, and exemplars picked by a photo-analyst. It is "
     "designed for 12.8 km (size times cell): coast with a bay and a harbour, town, airfield, river "
@@ -39,18 +39,18 @@ struct command {
 static bool parse_command(struct command *c, int argc, char **argv, int *exit_code)
 {
     *c = (struct command){.seed = 1, .size = 2560, .cell_m = 5};
-    const struct db_option options[] = {
-        {"out", DB_FOLDER, &c->folder, 0, 0, "DIR", "folder for the files, made if it is not there",
+    const struct hs_option options[] = {
+        {"out", HS_FOLDER, &c->folder, 0, 0, "DIR", "folder for the files, made if it is not there",
          true},
-        {"seed", DB_INTEGER, &c->seed, 0, 9007199254740991.0, "N",
+        {"seed", HS_INTEGER, &c->seed, 0, 9007199254740991.0, "N",
          "another country; the same seed gives the same pixels anywhere", false},
-        {"size", DB_INTEGER, &c->size, 64, 8192, "N", "pixels on a side", false},
-        {"cell", DB_REAL, &c->cell_m, 1, 50, "M", "size of a pixel in metres", false},
-        {"preview", DB_FLAG, &c->has_preview, 0, 0, NULL,
+        {"size", HS_INTEGER, &c->size, 64, 8192, "N", "pixels on a side", false},
+        {"cell", HS_REAL, &c->cell_m, 1, 50, "M", "size of a pixel in metres", false},
+        {"preview", HS_FLAG, &c->has_preview, 0, 0, NULL,
          "also write preview.png (colours), truth.png (classes), terrain.png (relief)", false},
-        {"Files", DB_HEADING, NULL, 0, 0, NULL, files_help, false},
+        {"Files", HS_HEADING, NULL, 0, 0, NULL, files_help, false},
     };
-    return db_options_read(&usage, options, sizeof options / sizeof options[0], argc, argv,
+    return hs_options_read(&usage, options, sizeof options / sizeof options[0], argc, argv,
                            exit_code);
 }
 

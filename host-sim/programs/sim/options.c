@@ -8,7 +8,7 @@
 #include <stdio.h>
 #include <string.h>
 
-static const struct db_usage usage = {
+static const struct hs_usage usage = {
     "", "run the display unit's firmware on this PC",
     "Fly a database image: the bus comes from a log or from a CAN interface, controls from a "
     "script or a window, and pictures go to the window or to files. Without a bus the unit shows "
@@ -89,48 +89,48 @@ struct raw {
 
 static bool read_table(struct options *o, struct raw *raw, int argc, char **argv, int *exit_code)
 {
-    struct db_taker size = {take_size, o}, glass = {take_glass, &o->glass},
+    struct hs_taker size = {take_size, o}, glass = {take_glass, &o->glass},
                     profile = {take_profile, &o->profile};
-    const struct db_option options[] = {
-        {"db", DB_INPUT, &o->database, 0, 0, "FILE", "flash image made by landmass-db build", true},
-        {"bus", DB_INPUT, &o->bus_log, 0, 0, "FILE.log",
+    const struct hs_option options[] = {
+        {"db", HS_INPUT, &o->database, 0, 0, "FILE", "flash image made by landmass-db build", true},
+        {"bus", HS_INPUT, &o->bus_log, 0, 0, "FILE.log",
          "take the bus from a candump -L log, in flight time from its first frame", false},
-        {"can", DB_TEXT, &o->can_interface, 0, 0, "IFACE",
+        {"can", HS_TEXT, &o->can_interface, 0, 0, "IFACE",
          "take the bus from a SocketCAN interface, in real time", false},
-        {"profile", DB_TAKER, &profile, 0, 0, "NAME",
+        {"profile", HS_TAKER, &profile, 0, 0, "NAME",
          "what the bus's frames mean: a profile of docs/bus.md (canas17)", false},
-        {"node", DB_INTEGER, &raw->node, 0, 255, "N",
+        {"node", HS_INTEGER, &raw->node, 0, 255, "N",
          "be this node of a CANaerospace bus and answer requests; 0: only listen", false},
-        {"script", DB_INPUT, &o->script, 0, 0, "FILE", "operate the controls by a script (below)",
+        {"script", HS_INPUT, &o->script, 0, 0, "FILE", "operate the controls by a script (below)",
          false},
-        {"png", DB_FOLDER, &o->png_folder, 0, 0, "DIR",
+        {"png", HS_FOLDER, &o->png_folder, 0, 0, "DIR",
          "write pictures into DIR (made if need be) as frame-NNNNN.png", false},
-        {"every", DB_INTEGER, &raw->every, 0, 1000000, "N",
+        {"every", HS_INTEGER, &raw->every, 0, 1000000, "N",
          "write every Nth picture; 0: only those the script names", false},
-        {"window", DB_FLAG, &o->has_window, 0, 0, NULL,
+        {"window", HS_FLAG, &o->has_window, 0, 0, NULL,
          "show bezel and glass in a window, in real time, and operate them (below)", false},
-        {"bezel", DB_FLAG, &o->has_bezel, 0, 0, NULL,
+        {"bezel", HS_FLAG, &o->has_bezel, 0, 0, NULL,
          "draw the bezel into the pictures of --png too", false},
-        {"size", DB_TAKER, &size, 0, 0, "WxH", "pixels of the glass, 256..1024 each (768x768)",
+        {"size", HS_TAKER, &size, 0, 0, "WxH", "pixels of the glass, 256..1024 each (768x768)",
          false},
-        {"glass", DB_TAKER, &glass, 0, 0, "whole|heading|strobe|borders",
+        {"glass", HS_TAKER, &glass, 0, 0, "whole|heading|strobe|borders",
          "a choice about the glass; give the option again for a second one.\n"
          "whole: the whole sector fits the frame; heading: the heading above the picture; strobe: "
          "a faint line along the beam; borders: lines along the sector's edges",
          false},
-        {"start", DB_REAL, &raw->start, 0, 999999, "S",
+        {"start", HS_REAL, &raw->start, 0, 999999, "S",
          "begin S seconds into the log of --bus; the script's and --seconds' times count from "
          "there",
          false},
-        {"seconds", DB_REAL, &raw->seconds, 0.001, 999999, "S",
+        {"seconds", HS_REAL, &raw->seconds, 0.001, 999999, "S",
          "flight time to run; left out: to the end of the log", false},
-        {"seed", DB_INTEGER, &raw->seed, 0, 0x7fffffff, "N",
+        {"seed", HS_INTEGER, &raw->seed, 0, 0x7fffffff, "N",
          "another speckle; the same inputs and seed give the same pictures", false},
-        {"quiet", DB_FLAG, &o->is_quiet, 0, 0, NULL, "no summary", false},
-        {"Script", DB_HEADING, NULL, 0, 0, NULL, script_help, false},
-        {"Keys of the window", DB_HEADING, NULL, 0, 0, NULL, window_keys_help, false},
+        {"quiet", HS_FLAG, &o->is_quiet, 0, 0, NULL, "no summary", false},
+        {"Script", HS_HEADING, NULL, 0, 0, NULL, script_help, false},
+        {"Keys of the window", HS_HEADING, NULL, 0, 0, NULL, window_keys_help, false},
     };
-    return db_options_read(&usage, options, sizeof options / sizeof options[0], argc, argv,
+    return hs_options_read(&usage, options, sizeof options / sizeof options[0], argc, argv,
                            exit_code);
 }
 
@@ -138,15 +138,15 @@ static bool read_table(struct options *o, struct raw *raw, int argc, char **argv
 static bool check(const struct options *o, int *exit_code)
 {
     if (o->bus_log && o->can_interface) {
-        *exit_code = db_options_wrong(&usage, "--bus", "and --can exclude each other");
+        *exit_code = hs_options_wrong(&usage, "--bus", "and --can exclude each other");
         return false;
     }
     if (o->start_s > 0 && !o->bus_log) {
-        *exit_code = db_options_wrong(&usage, "--start", "needs the log of --bus");
+        *exit_code = hs_options_wrong(&usage, "--start", "needs the log of --bus");
         return false;
     }
     if (!o->has_window && !o->bus_log && o->seconds <= 0) {
-        *exit_code = db_options_wrong(&usage, "--seconds",
+        *exit_code = hs_options_wrong(&usage, "--seconds",
                                       "or --bus or --window is needed, or the run would never end");
         return false;
     }

@@ -37,16 +37,16 @@ static int print_to_file(const struct table_set *set, const char *path)
 static int run(int argc, char **argv)
 {
     const struct table_set *set = table_set_find(argv[0]);
-    const struct db_usage usage = {
+    const struct hs_usage usage = {
         set->name, "constant tables as C source",
         "The build makes them so, below build/<board>/gen. A FILE that stands already is replaced "
         "whole, or left alone if anything fails."};
     const char *path = NULL;
     int exit_code;
-    const struct db_option options[] = {
-        {"FILE", DB_OUTPUT_ARGUMENT, &path, 0, 0, NULL, "left out: standard output", false},
+    const struct hs_option options[] = {
+        {"FILE", HS_OUTPUT_ARGUMENT, &path, 0, 0, NULL, "left out: standard output", false},
     };
-    if (!db_options_read(&usage, options, sizeof options / sizeof options[0], argc, argv,
+    if (!hs_options_read(&usage, options, sizeof options / sizeof options[0], argc, argv,
                          &exit_code)) {
         return exit_code;
     }

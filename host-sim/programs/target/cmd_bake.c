@@ -6,7 +6,7 @@
 
 #include <math.h>
 
-static const struct db_usage usage = {
+static const struct hs_usage usage = {
     "bake", "make the signature of a model, for the display unit",
     "Traces the model from all sides and keeps what the radar sees as chips of ground pixels, "
     "with\n"
@@ -53,13 +53,13 @@ int target_cmd_bake(int argc, char **argv)
     /* A matt white surface of 1 m2, seen straight on, has a cross section of 4 m2 (reflect.h). */
     struct bake_settings settings = bake_settings_default(10 * log10(4));
     enum { RAYS = BAKE_OPTIONS + SETUP_MODEL_OPTIONS, LAW = RAYS + SETUP_RAY_OPTIONS };
-    struct db_option options[LAW + SETUP_LAW_OPTIONS];
+    struct hs_option options[LAW + SETUP_LAW_OPTIONS];
     int exit_code;
     setup_model_options(&setup, options);
     bake_options(&settings, options + SETUP_MODEL_OPTIONS);
     setup_ray_options(&setup, options + RAYS);
     setup_law_options(&setup, options + LAW);
-    if (db_options_read(&usage, options, sizeof options / sizeof options[0], argc, argv,
+    if (hs_options_read(&usage, options, sizeof options / sizeof options[0], argc, argv,
                         &exit_code)) {
         exit_code = run(&setup, &settings) == 0 ? HS_EXIT_OK : HS_EXIT_FAILED;
     }

@@ -11,7 +11,7 @@
 #include <sys/resource.h>
 #include <time.h>
 
-static const struct db_usage usage = {
+static const struct hs_usage usage = {
     "bench", "measure rays a second, beside bare Embree",
     "Traces a picture again and again for some seconds and prints lines of name and value:\n"
     "  columns, rows, plane_m of the plane that sends the rays: width, height and how far\n"
@@ -196,13 +196,13 @@ int target_cmd_bench(int argc, char **argv)
     struct setup s = setup_default();
     double seconds = 3;
     enum { OWN = 2, COUNT = OWN + SETUP_OPTIONS };
-    struct db_option options[COUNT] = {
-        {"azimuth", DB_REAL, &s.azimuth_deg, -360, 360, "DEG", "of the radar", false},
-        {"seconds", DB_REAL, &seconds, 0.1, 600, "S", "to measure", false},
+    struct hs_option options[COUNT] = {
+        {"azimuth", HS_REAL, &s.azimuth_deg, -360, 360, "DEG", "of the radar", false},
+        {"seconds", HS_REAL, &seconds, 0.1, 600, "S", "to measure", false},
     };
     int exit_code;
     setup_options(&s, options + OWN);
-    if (!db_options_read(&usage, options, COUNT, argc, argv, &exit_code)) {
+    if (!hs_options_read(&usage, options, COUNT, argc, argv, &exit_code)) {
         return exit_code;
     }
     return run(&s, seconds);

@@ -9,7 +9,7 @@
 #include <stdio.h>
 #include <string.h>
 
-static const struct db_usage usage = {
+static const struct hs_usage usage = {
     "curves", "draw the reflection laws: Niu and others, Figures 3 to 6",
     "FIGURE is 3 (Fresnel), 4 (small perturbation), 5 (RaySAR, specular) or 6 (RaySAR, diffuse).\n"
     "3 is drawn over the angle of incidence, for several permittivities. The others are drawn\n"
@@ -127,12 +127,12 @@ int target_cmd_curves(int argc, char **argv)
 {
     const char *out = NULL;
     long figure = 3;
-    const struct db_option options[] = {
-        {"figure", DB_INTEGER, &figure, 3, 6, "FIGURE", "which", false},
-        {"out", DB_OUTPUT, &out, 0, 0, "FILE.png", "the picture", true},
+    const struct hs_option options[] = {
+        {"figure", HS_INTEGER, &figure, 3, 6, "FIGURE", "which", false},
+        {"out", HS_OUTPUT, &out, 0, 0, "FILE.png", "the picture", true},
     };
     int exit_code;
-    if (!db_options_read(&usage, options, sizeof options / sizeof options[0], argc, argv,
+    if (!hs_options_read(&usage, options, sizeof options / sizeof options[0], argc, argv,
                          &exit_code)) {
         return exit_code;
     }

@@ -4,7 +4,7 @@
 #include "hs/options.h"
 #include "tracer/materials.h"
 
-static const struct db_usage usage = {
+static const struct hs_usage usage = {
     "materials", "print the built-in surfaces in the form of a file for --materials",
     "Permittivity and loss are relative; heights are the surface's standard deviation; F_S and\n"
     "F_R are RaySAR's specular coefficient and roughness, F_D and F_B its diffuse coefficient\n"
@@ -13,7 +13,7 @@ static const struct db_usage usage = {
 int target_cmd_materials(int argc, char **argv)
 {
     int exit_code;
-    if (!db_options_read(&usage, NULL, 0, argc, argv, &exit_code)) {
+    if (!hs_options_read(&usage, NULL, 0, argc, argv, &exit_code)) {
         return exit_code;
     }
     materials_print();

@@ -11,7 +11,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 
-static const struct db_usage usage = {
+static const struct hs_usage usage = {
     "model", "check a model, describe it, draw it, write it as OBJ",
     "Built-in models:\n"
     "  slicy      Sandia's test target of boxes, cylinders, dihedral and trihedral\n"
@@ -65,17 +65,17 @@ int target_cmd_model(int argc, char **argv)
     long size_px = 480;
     s.depression_deg = 30;
     s.azimuth_deg = 30;
-    struct db_option options[SETUP_MODEL_OPTIONS + 5] = {
-        {"obj", DB_OUTPUT, &obj, 0, 0, "FILE.obj", "write the model, with z up", false},
-        {"view", DB_OUTPUT, &view, 0, 0, "FILE.png", "draw the model", false},
-        {"azimuth", DB_REAL, &s.azimuth_deg, -360, 360, "DEG",
+    struct hs_option options[SETUP_MODEL_OPTIONS + 5] = {
+        {"obj", HS_OUTPUT, &obj, 0, 0, "FILE.obj", "write the model, with z up", false},
+        {"view", HS_OUTPUT, &view, 0, 0, "FILE.png", "draw the model", false},
+        {"azimuth", HS_REAL, &s.azimuth_deg, -360, 360, "DEG",
          "of the eye, from the model's nose towards its right", false},
-        {"depression", DB_REAL, &s.depression_deg, 1, 90, "DEG", "of the eye's sight", false},
-        {"size", DB_INTEGER, &size_px, 16, 4096, "PIXELS", "of the picture", false},
+        {"depression", HS_REAL, &s.depression_deg, 1, 90, "DEG", "of the eye's sight", false},
+        {"size", HS_INTEGER, &size_px, 16, 4096, "PIXELS", "of the picture", false},
     };
     int exit_code;
     setup_model_options(&s, options + 5);
-    if (!db_options_read(&usage, options, SETUP_MODEL_OPTIONS + 5, argc, argv, &exit_code)) {
+    if (!hs_options_read(&usage, options, SETUP_MODEL_OPTIONS + 5, argc, argv, &exit_code)) {
         return exit_code;
     }
     struct mesh m;

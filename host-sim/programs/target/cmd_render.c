@@ -9,7 +9,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 
-static const struct db_usage usage = {
+static const struct hs_usage usage = {
     "render", "make the radar picture of a model, or of traced records",
     "Give --model, or --records of `landmass-target trace`, and --out or --csv, or both.\n"
     "In the PNG the radar looks from below upwards: near range is the lowest row, and what\n"
@@ -97,18 +97,18 @@ int target_cmd_render(int argc, char **argv)
     const char *records = NULL, *png = NULL, *csv = NULL;
     long zoom = 6;
     enum { OWN = 5, COUNT = OWN + SETUP_OPTIONS };
-    struct db_option options[COUNT] = {
-        {"records", DB_INPUT, &records, 0, 0, "FILE.trace", "in place of a model", false},
-        {"out", DB_OUTPUT, &png, 0, 0, "FILE.png", "the picture", false},
-        {"csv", DB_OUTPUT, &csv, 0, 0, "FILE.csv", "the amplitudes", false},
-        {"zoom", DB_INTEGER, &zoom, 1, 64, "N", "dots of the PNG a pixel, either way", false},
-        {"azimuth", DB_REAL, &s.azimuth_deg, -360, 360, "DEG",
+    struct hs_option options[COUNT] = {
+        {"records", HS_INPUT, &records, 0, 0, "FILE.trace", "in place of a model", false},
+        {"out", HS_OUTPUT, &png, 0, 0, "FILE.png", "the picture", false},
+        {"csv", HS_OUTPUT, &csv, 0, 0, "FILE.csv", "the amplitudes", false},
+        {"zoom", HS_INTEGER, &zoom, 1, 64, "N", "dots of the PNG a pixel, either way", false},
+        {"azimuth", HS_REAL, &s.azimuth_deg, -360, 360, "DEG",
          "of the radar, from the model's nose towards its right", false},
     };
     int exit_code;
     setup_options(&s, options + OWN);
     options[OWN].is_required = false; /* the model: there may be records instead */
-    if (!db_options_read(&usage, options, COUNT, argc, argv, &exit_code)) {
+    if (!hs_options_read(&usage, options, COUNT, argc, argv, &exit_code)) {
         return exit_code;
     }
     if (!records == !s.model || (!png && !csv)) {

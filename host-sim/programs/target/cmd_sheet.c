@@ -11,7 +11,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-static const struct db_usage usage = {
+static const struct hs_usage usage = {
     "sheet", "draw a model and its radar picture side by side, over azimuth",
     "Each pair shows the model as an eye at the radar's azimuth sees it, 40 degrees down, and\n"
     "the radar picture at the depression given, both to the same scale. All radar pictures\n"
@@ -124,16 +124,16 @@ int target_cmd_sheet(int argc, char **argv)
     const char *out = NULL;
     long count = 12, columns = 3, size_px = 216;
     enum { OWN = 5, COUNT = OWN + SETUP_OPTIONS };
-    struct db_option options[COUNT] = {
-        {"out", DB_OUTPUT, &out, 0, 0, "FILE.png", "the sheet", true},
-        {"count", DB_INTEGER, &count, 1, 360, "N", "azimuths, evenly around", false},
-        {"azimuth", DB_REAL, &s.azimuth_deg, -360, 360, "DEG", "of the first of them", false},
-        {"columns", DB_INTEGER, &columns, 1, 20, "N", "pairs side by side", false},
-        {"size", DB_INTEGER, &size_px, 16, 2048, "DOTS", "side of each picture, at most", false},
+    struct hs_option options[COUNT] = {
+        {"out", HS_OUTPUT, &out, 0, 0, "FILE.png", "the sheet", true},
+        {"count", HS_INTEGER, &count, 1, 360, "N", "azimuths, evenly around", false},
+        {"azimuth", HS_REAL, &s.azimuth_deg, -360, 360, "DEG", "of the first of them", false},
+        {"columns", HS_INTEGER, &columns, 1, 20, "N", "pairs side by side", false},
+        {"size", HS_INTEGER, &size_px, 16, 2048, "DOTS", "side of each picture, at most", false},
     };
     int exit_code;
     setup_options(&s, options + OWN);
-    if (!db_options_read(&usage, options, COUNT, argc, argv, &exit_code)) {
+    if (!hs_options_read(&usage, options, COUNT, argc, argv, &exit_code)) {
         return exit_code;
     }
     const struct layout layout = {(int)count, (int)columns, (int)size_px};

@@ -6,7 +6,7 @@
 
 #include <stdio.h>
 
-static const struct db_usage usage = {
+static const struct hs_usage usage = {
     "trace", "trace a model and keep every reflection",
     "Rays leave a plane square to the line of sight; each reflection is kept with its angles,\n"
     "material and the place where its echo is focused (docs/FORMATS.md, Traced records), for\n"
@@ -60,21 +60,21 @@ int target_cmd_trace(int argc, char **argv)
     struct setup s = setup_default();
     struct outputs outputs = {NULL, NULL, 2};
     enum { OWN = 4, COUNT = OWN + SETUP_MODEL_OPTIONS + SETUP_TRACE_OPTIONS };
-    struct db_option options[COUNT] = {
-        {"out", DB_OUTPUT, &outputs.records, 0, 0, "FILE.trace", "the records", true},
-        {"picture", DB_OUTPUT, &outputs.picture, 0, 0, "FILE.png",
+    struct hs_option options[COUNT] = {
+        {"out", HS_OUTPUT, &outputs.records, 0, 0, "FILE.trace", "the records", true},
+        {"picture", HS_OUTPUT, &outputs.picture, 0, 0, "FILE.png",
          "what was recorded at one reflection, channel by channel, at the places where the\nrays "
          "were sent (Niu and others, Table I)",
          false},
-        {"picture-of", DB_INTEGER, &outputs.bounce, 1, TRACE_BOUNCES_MAX, "N",
+        {"picture-of", HS_INTEGER, &outputs.bounce, 1, TRACE_BOUNCES_MAX, "N",
          "which reflection that is", false},
-        {"azimuth", DB_REAL, &s.azimuth_deg, -360, 360, "DEG",
+        {"azimuth", HS_REAL, &s.azimuth_deg, -360, 360, "DEG",
          "of the radar, from the model's nose towards its right", false},
     };
     int exit_code;
     setup_model_options(&s, options + OWN);
     setup_trace_options(&s, options + OWN + SETUP_MODEL_OPTIONS);
-    if (!db_options_read(&usage, options, COUNT, argc, argv, &exit_code)) {
+    if (!hs_options_read(&usage, options, COUNT, argc, argv, &exit_code)) {
         return exit_code;
     }
     return run(&s, &outputs);

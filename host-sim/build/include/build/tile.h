@@ -43,7 +43,7 @@ struct build_context {
     struct build_plan plan;
     uint32_t seed;
     int parts; /* pixels of the class raster that a cell is cut into, along one side */
-    int terrain_level[DB_LIST_MAX]; /* from which level each terrain layer gives tiles of its own */
+    int terrain_level[HS_LIST_MAX]; /* from which level each terrain layer gives tiles of its own */
     struct build_detail detail;     /* all zero without any */
     struct build_counts counts;
     struct build_towns towns;

@@ -11,7 +11,7 @@
 
 /* How the files of a stack are to be taken. */
 struct db_raster_options {
-    const struct db_list *paths; /* borrowed; at least one */
+    const struct hs_list *paths; /* borrowed; at least one */
     bool has_nodata;             /* `nodata` replaces what the files declare, for all bands */
     double nodata;
     bool black_is_nodata; /* pixels that are 0 in all bands of the stack hold no data */

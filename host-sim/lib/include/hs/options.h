@@ -7,45 +7,45 @@
 #include <stdbool.h>
 #include <stddef.h>
 
-enum { DB_LIST_MAX = 256 };
+enum { HS_LIST_MAX = 256 };
 
 /* A repeated or comma separated option; `items` are owned. */
-struct db_list {
-    char *items[DB_LIST_MAX];
+struct hs_list {
+    char *items[HS_LIST_MAX];
     int count;
 };
 
 /* A value with a form of its own, such as LAT,LON. `take` returns NULL, or why it refuses `text` as
  * what the option does: "needs two numbers". It is called once for each time the option is given.
  */
-struct db_taker {
+struct hs_taker {
     const char *(*take)(void *context, const char *text);
     void *context;
 };
 
-enum db_option_kind {
-    DB_FLAG,    /* bool */
-    DB_TEXT,    /* const char *, borrowed from argv */
-    DB_LIST,    /* struct db_list */
-    DB_INPUT,   /* const char *: a file that is read; hs/input_file.h */
-    DB_INPUTS,  /* struct db_list of such */
-    DB_OUTPUT,  /* const char *: a file that is written; claimed (hs/atomic_file.h) */
-    DB_FOLDER,  /* const char *: a folder that is written to, and made if need be */
-    DB_REAL,    /* double within low..high; NAN before: there is no default */
-    DB_INTEGER, /* long within low..high */
-    DB_CHOICE,  /* int: which of the words in value_name, "csv|gpx|igc", counted from 0; -1 before:
+enum hs_option_kind {
+    HS_FLAG,    /* bool */
+    HS_TEXT,    /* const char *, borrowed from argv */
+    HS_LIST,    /* struct hs_list */
+    HS_INPUT,   /* const char *: a file that is read; hs/input_file.h */
+    HS_INPUTS,  /* struct hs_list of such */
+    HS_OUTPUT,  /* const char *: a file that is written; claimed (hs/atomic_file.h) */
+    HS_FOLDER,  /* const char *: a folder that is written to, and made if need be */
+    HS_REAL,    /* double within low..high; NAN before: there is no default */
+    HS_INTEGER, /* long within low..high */
+    HS_CHOICE,  /* int: which of the words in value_name, "csv|gpx|igc", counted from 0; -1 before:
                    there is no default */
-    DB_TAKER,   /* struct db_taker */
-    DB_INPUT_ARGUMENT, /* const char *: the next word that is no option, a file that is read. "-" is
+    HS_TAKER,   /* struct hs_taker */
+    HS_INPUT_ARGUMENT, /* const char *: the next word that is no option, a file that is read. "-" is
                           such a word. name: its place holder, "TRACK" */
-    DB_OUTPUT_ARGUMENT, /* likewise a file that is written */
-    DB_HEADING, /* no option: a heading (name, or NULL for none) of what follows in the help, and
+    HS_OUTPUT_ARGUMENT, /* likewise a file that is written */
+    HS_HEADING, /* no option: a heading (name, or NULL for none) of what follows in the help, and
                    lines of text below it (help) */
 };
 
-struct db_option {
+struct hs_option {
     const char *name; /* without the dashes */
-    enum db_option_kind kind;
+    enum hs_option_kind kind;
     void *target; /* of the type named above; holds the default before and the value after */
     double low, high;
     const char *value_name; /* "FILE", "N" */
@@ -53,7 +53,7 @@ struct db_option {
     bool is_required;       /* a text, a list or an argument */
 };
 
-struct db_usage {
+struct hs_usage {
     const char *command;     /* "segment"; "" where the program has no sub-commands */
     const char *summary;     /* one line */
     const char *description; /* whole paragraphs */
@@ -65,21 +65,21 @@ struct db_usage {
  * - HS_EXIT_USAGE, reported: a word too many or an unknown option, a value too many or too few, a
  *   number outside its range, a word that is no choice, or a required option that is missing,
  * - HS_EXIT_FAILED, reported: an output cannot be written, or is an input or another output. */
-bool db_options_read(const struct db_usage *usage, const struct db_option *options, size_t count,
+bool hs_options_read(const struct hs_usage *usage, const struct hs_option *options, size_t count,
                      int argc, char **argv, int *exit_code);
 
 /* Report what is wrong with `option` ("--bus") where each option alone makes sense and they do not
  * together. Returns HS_EXIT_USAGE. */
-int db_options_wrong(const struct db_usage *usage, const char *option, const char *cause);
+int hs_options_wrong(const struct hs_usage *usage, const char *option, const char *cause);
 
 /* Free the items. Harmless on a zeroed list. */
-void db_list_free(struct db_list *list);
+void hs_list_free(struct hs_list *list);
 
 /* The whole of `text` as a finite number. False, with *number undefined, where it is none. */
-bool db_parse_number(const char *text, double *number);
+bool hs_parse_number(const char *text, double *number);
 
 /* Split `text` ("polygons:0.3") at the colon: copies the word before it and reads the number after
  * it. Returns 0, or -1 when there is no colon, no number, or the word does not fit. */
-int db_split_word_number(const char *text, char *word, size_t word_size, double *number);
+int hs_split_word_number(const char *text, char *word, size_t word_size, double *number);
 
 #endif

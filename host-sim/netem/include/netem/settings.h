@@ -25,9 +25,9 @@ enum { NM_TARGET_OPTIONS = SETUP_MODEL_OPTIONS + 9, NM_CHIP_OPTIONS = 8, NM_TRAI
 struct nm_settings nm_settings_default(void);
 
 /* Fill in the options of each group; `o` has room for as many as the enum says. */
-void nm_target_options(struct nm_settings *s, struct db_option *o);
-void nm_chip_options(struct nm_settings *s, struct db_option *o);
-void nm_train_options(struct nm_settings *s, struct db_option *o);
+void nm_target_options(struct nm_settings *s, struct hs_option *o);
+void nm_chip_options(struct nm_settings *s, struct hs_option *o);
+void nm_train_options(struct nm_settings *s, struct hs_option *o);
 
 /* After reading the command line: what the words among the settings mean. Return 0, or -1 with the
  * error reported. */

@@ -38,7 +38,7 @@ struct terrain {
 /* Open the models and fill their voids. With no path at all everything lies at sea level.
  * `path.zip` is opened through /vsizip/. Returns 0, or -1 with the error reported and nothing to
  * close. Prints what was found or assumed of their heights. Reads every model once or twice. */
-int terrain_open(struct terrain *t, const struct db_list *paths,
+int terrain_open(struct terrain *t, const struct hs_list *paths,
                  const struct terrain_options *options);
 void terrain_close(struct terrain *t);
 

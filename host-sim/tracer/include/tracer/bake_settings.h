@@ -10,7 +10,7 @@
 struct bake_settings {
     const char *out, *name, *sheet;
     long aspects;
-    struct db_list depressions; /* degrees; none: bake_depressions */
+    struct hs_list depressions; /* degrees; none: bake_depressions */
     double pixel_m;             /* 0: worked out */
     double gain_db, mean_dbsm;  /* mean: NAN for the gain */
 };
@@ -22,7 +22,7 @@ struct bake_settings bake_settings_default(double gain_db);
 void bake_settings_free(struct bake_settings *s);
 
 /* `o` has room for BAKE_OPTIONS. */
-void bake_options(struct bake_settings *s, struct db_option *o);
+void bake_options(struct bake_settings *s, struct hs_option *o);
 
 /* The order that settings and set-up make for a mesh; its maker is still missing. It borrows from
  * both. Returns 0, or -1 with the error reported. */

@@ -38,12 +38,12 @@ enum {
 struct setup setup_default(void);
 
 /* Fill in the options of each group. `o` has room for as many as the enum says. */
-void setup_model_options(struct setup *s, struct db_option *o);
-void setup_ray_options(struct setup *s, struct db_option *o);
-void setup_trace_options(struct setup *s, struct db_option *o); /* without the azimuth */
-void setup_law_options(struct setup *s, struct db_option *o);
-void setup_chip_options(struct setup *s, struct db_option *o); /* law and chip */
-void setup_options(struct setup *s, struct db_option *o);      /* all three, the model first */
+void setup_model_options(struct setup *s, struct hs_option *o);
+void setup_ray_options(struct setup *s, struct hs_option *o);
+void setup_trace_options(struct setup *s, struct hs_option *o); /* without the azimuth */
+void setup_law_options(struct setup *s, struct hs_option *o);
+void setup_chip_options(struct setup *s, struct hs_option *o); /* law and chip */
+void setup_options(struct setup *s, struct hs_option *o);      /* all three, the model first */
 
 /* The built-in or read model, checked and placed. Returns 0, or -1 reported. */
 int setup_load(const struct setup *s, struct mesh *m);

@@ -256,7 +256,7 @@ TEST(labels_of_another_extent_are_refused)
 
 static void open_stack(struct db_raster *r, const char *names, bool black)
 {
-    struct db_list list = {.count = 0};
+    struct hs_list list = {.count = 0};
     char copy[64];
     snprintf(copy, sizeof copy, "%s", names);
     for (char *name = strtok(copy, ","); name; name = strtok(NULL, ",")) {

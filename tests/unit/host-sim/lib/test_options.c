@@ -14,7 +14,7 @@
 struct values {
     bool is_quiet;
     const char *out, *track, *second, *folder;
-    struct db_list list;
+    struct hs_list list;
     double height;
     long count;
     int format;
@@ -32,7 +32,7 @@ static const char *take_pair(void *context, const char *text)
     return NULL;
 }
 
-static const struct db_usage usage = {"try", "a command to try", "First.\n\n'Second -paragraph."};
+static const struct hs_usage usage = {"try", "a command to try", "First.\n\n'Second -paragraph."};
 
 /* Read a command line of up to 8 words; ended by NULL. Returns -1 to go on, or the exit code. */
 static int read_words(struct values *v, const char *const *words)
@@ -44,21 +44,21 @@ static int read_words(struct values *v, const char *const *words)
         argv[argc] = (char *)(size_t)words[argc - 1];
         argc++;
     }
-    struct db_taker pair = {take_pair, &v->pairs};
-    const struct db_option options[] = {
-        {"TRACK", DB_INPUT_ARGUMENT, &v->track, 0, 0, NULL, "a track", true},
-        {"SECOND", DB_INPUT_ARGUMENT, &v->second, 0, 0, NULL, "another", false},
-        {"quiet", DB_FLAG, &v->is_quiet, 0, 0, NULL, "say nothing", false},
-        {"Numbers", DB_HEADING, NULL, 0, 0, NULL, "All of them.\n", false},
-        {"out", DB_TEXT, &v->out, 0, 0, "FILE", "where to\n.TH or not", false},
-        {"item", DB_LIST, &v->list, 0, 0, "NAME", "again and again", false},
-        {"height", DB_REAL, &v->height, -10, 10, "M", "metres", false},
-        {"count", DB_INTEGER, &v->count, 0, 9, "N", "how many", false},
-        {"format", DB_CHOICE, &v->format, 0, 0, "csv|gpx|igc", "of the track", false},
-        {"into", DB_FOLDER, &v->folder, 0, 0, "DIR", "a folder", false},
-        {"pair", DB_TAKER, &pair, 0, 0, "A,B", "a pair", false},
+    struct hs_taker pair = {take_pair, &v->pairs};
+    const struct hs_option options[] = {
+        {"TRACK", HS_INPUT_ARGUMENT, &v->track, 0, 0, NULL, "a track", true},
+        {"SECOND", HS_INPUT_ARGUMENT, &v->second, 0, 0, NULL, "another", false},
+        {"quiet", HS_FLAG, &v->is_quiet, 0, 0, NULL, "say nothing", false},
+        {"Numbers", HS_HEADING, NULL, 0, 0, NULL, "All of them.\n", false},
+        {"out", HS_TEXT, &v->out, 0, 0, "FILE", "where to\n.TH or not", false},
+        {"item", HS_LIST, &v->list, 0, 0, "NAME", "again and again", false},
+        {"height", HS_REAL, &v->height, -10, 10, "M", "metres", false},
+        {"count", HS_INTEGER, &v->count, 0, 9, "N", "how many", false},
+        {"format", HS_CHOICE, &v->format, 0, 0, "csv|gpx|igc", "of the track", false},
+        {"into", HS_FOLDER, &v->folder, 0, 0, "DIR", "a folder", false},
+        {"pair", HS_TAKER, &pair, 0, 0, "A,B", "a pair", false},
     };
-    return db_options_read(&usage, options, sizeof options / sizeof options[0], argc, argv,
+    return hs_options_read(&usage, options, sizeof options / sizeof options[0], argc, argv,
                            &exit_code)
                ? -1
                : exit_code;
@@ -75,7 +75,7 @@ TEST(every_kind_is_read_with_its_value_beside_or_behind_an_equals_sign)
     assert_string_equal(v.track, "flight.gpx");
     assert_string_equal(v.list.items[2], "c");
     assert_null(v.second);
-    db_list_free(&v.list);
+    hs_list_free(&v.list);
     assert_int_equal(READ(&v, "-", "two", "--pair", "1,2", "--pair", "3,4", "--quiet"), -1);
     assert_true(v.pairs == 2 && v.is_quiet && v.count == 7 && v.format == 1 && isnan(v.height));
     assert_string_equal(v.second, "two");
@@ -90,7 +90,7 @@ static int caught(int stream, char *text, size_t size, const char *const *words)
     dup2(file, stream);
     struct values v;
     const int code = read_words(&v, words);
-    db_list_free(&v.list);
+    hs_list_free(&v.list);
     fflush(NULL);
     dup2(kept, stream);
     close(kept);

@@ -19,7 +19,7 @@ enum { N = LM_TILE_POSTS };
 
 static void open_terrain(struct terrain *t, uint8_t shift0, int count, ...)
 {
-    struct db_list list = {.count = count};
+    struct hs_list list = {.count = count};
     va_list names;
     va_start(names, count);
     for (int i = 0; i < count; i++) {
@@ -299,7 +299,7 @@ TEST(a_large_void_on_a_coast_is_left_unless_voids_are_said_to_be_sea)
                                    .value = large_holes};
     scene_write("large.tif", &r);
     for (int sea = 0; sea < 2; sea++) {
-        const struct db_list list = {.items = {(char *)scene_path("large.tif")}, .count = 1};
+        const struct hs_list list = {.items = {(char *)scene_path("large.tif")}, .count = 1};
         const struct terrain_options options = {.voids_are_sea = sea};
         struct terrain t;
         assert_int_equal(terrain_open(&t, &list, &options), 0);
