@@ -3,7 +3,7 @@
 #
 #   fuzz_target NAME,SEES      tests/fuzz/fuzz_NAME.c and the sanitized libraries, named as in host-sim/host-sim.mk
 LIB_fuzz := $(O)/tests/fuzz/libfuzz.a
-$(call archive, $(LIB_fuzz), $(addprefix tests/fuzz/,seal.c file.c track.c))
+$(call archive, $(LIB_fuzz), $(addprefix tests/fuzz/,seal.c file.c track.c osm.c))
 
 define fuzz_rules
 FUZZ_NAMES += $(1)

@@ -34,15 +34,20 @@ static void unhush(int saved)
     close(saved);
 }
 
-static struct result read_as(enum nav_format format, bool is_strict, const char *text)
+static struct result read_with(struct nav_reading reading, enum nav_format format, const char *text)
 {
-    struct result r = {.reading = {.name = "test", .is_strict = is_strict}};
+    struct result r = {.reading = reading};
     char *copy = strdup(text);
     const int saved = hush();
     r.status = nav_read_text(copy, strlen(text), format, &r.track, &r.reading);
     unhush(saved);
     free(copy);
     return r;
+}
+
+static struct result read_as(enum nav_format format, bool is_strict, const char *text)
+{
+    return read_with((struct nav_reading){.name = "test", .is_strict = is_strict}, format, text);
 }
 
 static struct result read_csv(const char *text)
@@ -277,13 +282,7 @@ TEST(gpx_heights_are_above_the_ellipsoid_where_every_point_has_a_geoid)
 /* Points as a route, in the order of the file, whatever their times. */
 static struct result read_route(enum nav_format format, const char *text)
 {
-    struct result r = {.reading = {.name = "test", .is_route = true}};
-    char *copy = strdup(text);
-    const int saved = hush();
-    r.status = nav_read_text(copy, strlen(text), format, &r.track, &r.reading);
-    unhush(saved);
-    free(copy);
-    return r;
+    return read_with((struct nav_reading){.name = "test", .is_route = true}, format, text);
 }
 
 TEST(points_without_times_are_read_as_a_route)
