@@ -321,7 +321,9 @@ static int lay_out(struct build_detail *d, const char *path)
 
 static int make_section(struct build_detail *d, const char *path)
 {
-    qsort(d->items, d->count, sizeof *d->items, compare_items);
+    if (d->count > 0) { /* an empty file has no array either */
+        qsort(d->items, d->count, sizeof *d->items, compare_items);
+    }
     if (lay_out(d, path) != 0) {
         return -1;
     }
