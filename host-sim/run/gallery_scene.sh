@@ -311,7 +311,7 @@ airfield() { # a field of our own, on level ground at 42 N 27 W, with what landm
     "$bin"/landmass-db reflect --class-raster "$out/classes.tif" --classes $classes --out "$out/reflectivity.tif"
     cp $in/airfield.targets "$out"
     build airfield --classes $classes --class-raster "$out/classes.tif" --reflectivity "$out/reflectivity.tif" \
-        --heights "$out/heights.tif" --terrain "$out/terrain.tif" --targets "$out/airfield.targets"
+        --heights "$out/heights.tif" --terrain "$out/terrain.tif" --trust-inputs --targets "$out/airfield.targets"
     fly airfield --straight 41.95,-27.02,10,1500,150 --seconds 26
     fly airfield-modes --straight 41.9319,-27.0543,0,1500,180 --seconds 24
 }

@@ -142,13 +142,10 @@ class Scenes:
         return path
 
     def make_builtin(self, to):
+        """The classes are the scene's own: the rows judge what the radar makes of them, not how well they are found."""
         self.run("landmass-scene", "--out", to / "scene")
-        self.run("landmass-db", "train", "--image", to / "scene/image.tif", "--exemplars", to / "scene/exemplars.geojson",
-                 "--classes", CLASSES, "--net", to / "scene.net", "--hold-out", "polygons:0.33")
-        self.run("landmass-db", "segment", "--image", to / "scene/image.tif", "--net", to / "scene.net",
-                 "--classes", CLASSES, "--out", to / "classes.tif")
-        self.reflect_and_build(to, "--heights", to / "scene/heights.tif", "--detail", to / "scene/detail.txt",
-                              "--terrain", to / "scene/terrain.tif")
+        self.reflect_and_build(to, to / "scene/truth.tif", "--heights", to / "scene/heights.tif", "--detail",
+                               to / "scene/detail.txt", "--terrain", to / "scene/terrain.tif")
 
     def make_orihuela(self, to):
         here = "host-sim/programs/realradar"
@@ -159,7 +156,7 @@ class Scenes:
                  "--out", to / "classes.tif")
         flat = to / "terrain.tif"
         write_raster(flat, np.full((40, 40), 10, np.float32), (-0.90, 0.008, 38.26, -0.008), 4326)
-        self.reflect_and_build(to, "--terrain", flat, "--cell", "10")
+        self.reflect_and_build(to, to / "classes.tif", "--terrain", flat, "--cell", "10")
 
     def make_hawaii(self, to):
         terrain = [word for name in DTED for word in ("--terrain", self.data / name)]
@@ -193,10 +190,10 @@ class Scenes:
                  "--terrain", to / "terrain.tif", "--land-class", "field", "--water-class", "water",
                  "--cell", "4.77", "--out", to / "scene.lmdb")
 
-    def reflect_and_build(self, to, *words):
-        self.run("landmass-db", "reflect", "--class-raster", to / "classes.tif", "--classes", CLASSES,
+    def reflect_and_build(self, to, classes, *words):
+        self.run("landmass-db", "reflect", "--class-raster", classes, "--classes", CLASSES,
                  "--out", to / "reflectivity.tif")
-        self.run("landmass-db", "build", "--classes", CLASSES, "--class-raster", to / "classes.tif",
+        self.run("landmass-db", "build", "--classes", CLASSES, "--class-raster", classes,
                  "--reflectivity", to / "reflectivity.tif", *words, "--out", to / "scene.lmdb")
 
     # ---- pictures ----
