@@ -56,7 +56,7 @@ static char **names_of(GDALRasterBandH band)
 
 static void match_names(struct db_class_numbers *n, char **names, const struct db_class_table *t)
 {
-    for (int i = 0; names[i] && i < DB_CLASS_NODATA; i++) {
+    for (int i = 0; i < DB_CLASS_NODATA && names[i]; i++) {
         const int c = db_class_find(t, names[i]);
         n->class_of[i] = c < 0 ? DB_CLASS_UNKNOWN : (uint8_t)c;
         n->are_named = n->are_named || names[i][0];

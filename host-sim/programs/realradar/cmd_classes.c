@@ -92,7 +92,7 @@ static bool read_options(struct files *f, int argc, char **argv, int *exit_code)
 
 int rr_cmd_classes(int argc, char **argv)
 {
-    struct files f = {NULL};
+    struct files f = {0};
     int exit_code;
     if (!read_options(&f, argc, argv, &exit_code)) {
         return exit_code;
