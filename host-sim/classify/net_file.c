@@ -222,7 +222,7 @@ static int take_input(struct db_text_file *f, struct db_net *net, int i, const f
 static int read_inputs(struct db_text_file *f, struct db_net *net)
 {
     const int count = net->has_range ? 4 : 2;
-    float numbers[4];
+    float numbers[4] = {0};
     if (strncmp(f->line, "input ", 6) != 0) {
         return db_text_error(f, "train again or copy the file again",
                              "expected `class NAME` or `input MEAN SCALE LOW HIGH`");
@@ -278,7 +278,7 @@ static int read_end(struct db_text_file *f)
 static int read_net(struct db_text_file *f, struct db_net *net)
 {
     struct db_mlp shape = {0};
-    int version, unit, loss;
+    int version = 0, unit = 0, loss = 0;
     if (read_count(f, "landmass-net", 1, 2, &version) != 0 ||
         read_count(f, "bands", 1, DB_INPUT_MAX, &net->band_count) != 0 ||
         read_count(f, "context", 1, DB_CONTEXT_MAX, &net->context) != 0 ||

@@ -52,14 +52,14 @@ static void set_rule(struct rule *rule, const struct lm_classes *classes, enum i
     for (int i = 0; i < 256; i++) {
         rule->power[i] = pow(10.0, image_gamma_db((uint8_t)i) / 10.0);
     }
-    for (uint8_t k = 0; k < LM_DB_CLASSES; k++) {
+    for (int k = 0; k < LM_DB_CLASSES; k++) {
         const struct lm_class *c = &classes->entry[k];
-        uint8_t first = c->facing == 0 ? k : 0;
+        int first = c->facing == 0 ? k : 0;
         while (first < k && (classes->entry[first].kind != c->kind ||
                              memcmp(classes->entry[first].name, c->name, sizeof c->name) != 0)) {
             first++;
         }
-        rule->group[k] = first;
+        rule->group[k] = (uint8_t)first;
         rule->stands[k] = c->kind == LM_KIND_STRUCTURE && k != LM_DB_CLASS_NONE;
     }
 }

@@ -119,7 +119,7 @@ static void print_range(const struct hs_option *o, const char *indent)
         printf("%sRange %g to %g; default %g.\n", indent, o->low, o->high, *(double *)o->target);
     } else if (o->kind == HS_INTEGER) {
         printf("%sRange %.0f to %.0f; default %ld.\n", indent, o->low, o->high, *(long *)o->target);
-    } else if (o->kind == HS_CHOICE && *(int *)o->target >= 0) {
+    } else if (o->kind == HS_CHOICE && o->value_name && *(int *)o->target >= 0) {
         const char *word = o->value_name;
         for (int i = *(int *)o->target; i > 0; i--) {
             word += strcspn(word, "|") + 1;
