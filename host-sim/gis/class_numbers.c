@@ -1,8 +1,7 @@
 #include "gis/class_numbers.h"
 
-#include "gis/gdal_start.h"
+#include "gis/band_walk.h"
 #include "hs/error.h"
-#include "hs/progress.h"
 
 #include <cpl_string.h>
 #include <inttypes.h>
@@ -10,8 +9,6 @@
 #include <ogr_srs_api.h>
 #include <stdlib.h>
 #include <string.h>
-
-enum { BLOCK_BYTES = 64 << 20 };
 
 /* ---- names ---- */
 
@@ -78,8 +75,10 @@ struct census {
     int has_nodata;
 };
 
-static void count_pixels(struct census *c, const float *values, size_t count)
+static bool count_pixels(void *context, const void *pixels, size_t count)
 {
+    struct census *c = context;
+    const float *values = pixels;
     for (size_t i = 0; i < count; i++) {
         const float v = values[i];
         if (isnan(v) || (c->has_nodata && v == (float)c->nodata)) {
@@ -91,43 +90,16 @@ static void count_pixels(struct census *c, const float *values, size_t count)
         }
     }
     c->pixels += count;
-}
-
-static int count_rows(struct census *c, GDALRasterBandH band, const char *path, float *values,
-                      int block_rows)
-{
-    const int width = GDALGetRasterBandXSize(band), height = GDALGetRasterBandYSize(band);
-    struct hs_progress bar;
-    int result = 0;
-    hs_progress_begin(&bar, "classes", (uint64_t)height);
-    for (int y = 0; y < height && result == 0 && isnan(c->stray); y += block_rows) {
-        const int rows = height - y < block_rows ? height - y : block_rows;
-        CPLErrorReset();
-        if (GDALRasterIO(band, GF_Read, 0, y, width, rows, values, width, rows, GDT_Float32, 0,
-                         0) != CE_None) {
-            result =
-                hs_error(path, "the file may be cut short; make it again",
-                         "cannot be read at rows %d..%d: %s", y, y + rows - 1, db_gdal_complaint());
-        } else {
-            count_pixels(c, values, (size_t)width * (size_t)rows);
-            hs_progress_update(&bar, (uint64_t)(y + rows));
-        }
-    }
-    hs_progress_end(&bar);
-    return result;
+    return isnan(c->stray);
 }
 
 static int count_band(struct census *c, GDALRasterBandH band, const char *path)
 {
-    const size_t row_bytes = (size_t)GDALGetRasterBandXSize(band) * sizeof(float);
-    const int fit = (int)(BLOCK_BYTES / row_bytes);
     *c = (struct census){.stray = (double)NAN};
     c->nodata = GDALGetRasterNoDataValue(band, &c->has_nodata);
-    float *values = malloc(row_bytes * (size_t)(fit > 0 ? fit : 1));
-    const int result = values ? count_rows(c, band, path, values, fit > 0 ? fit : 1)
-                              : hs_error(path, NULL, "out of memory");
-    free(values);
-    return result;
+    const struct db_band_walk walk = {GDT_Float32, "classes",
+                                      "the file may be cut short; make it again", count_pixels, c};
+    return db_band_walk(band, path, &walk);
 }
 
 /* ---- what they mean ---- */

@@ -1,8 +1,7 @@
 #include "gis/code_map.h"
 
-#include "gis/gdal_start.h"
+#include "gis/band_walk.h"
 #include "hs/error.h"
-#include "hs/progress.h"
 #include "hs/text_file.h"
 
 #include <inttypes.h>
@@ -104,7 +103,7 @@ int db_code_map_class(const struct db_code_map *map, long code)
 
 /* ---- the survey ---- */
 
-enum { BLOCK_BYTES = 64 << 20, NAMED_MAX = 12 };
+enum { NAMED_MAX = 12 };
 
 struct census {
     uint64_t counts[DB_CODES];
@@ -113,8 +112,10 @@ struct census {
     int has_nodata;
 };
 
-static void count_pixels(struct census *c, const int32_t *pixels, size_t count)
+static bool count_pixels(void *context, const void *block, size_t count)
 {
+    struct census *c = context;
+    const int32_t *pixels = block;
     for (size_t i = 0; i < count; i++) {
         if (c->has_nodata && pixels[i] == c->nodata_value) {
             c->nodata++;
@@ -125,30 +126,7 @@ static void count_pixels(struct census *c, const int32_t *pixels, size_t count)
         }
     }
     c->pixels += count;
-}
-
-static int count_rows(struct census *c, GDALRasterBandH band, const char *path, int32_t *pixels,
-                      int block_rows)
-{
-    const int width = GDALGetRasterBandXSize(band), height = GDALGetRasterBandYSize(band);
-    struct hs_progress bar;
-    int result = 0;
-    hs_progress_begin(&bar, "codes", (uint64_t)height);
-    for (int y = 0; y < height && result == 0; y += block_rows) {
-        const int rows = height - y < block_rows ? height - y : block_rows;
-        CPLErrorReset();
-        if (GDALRasterIO(band, GF_Read, 0, y, width, rows, pixels, width, rows, GDT_Int32, 0, 0) !=
-            CE_None) {
-            result =
-                hs_error(path, "the file may be cut short; get it again",
-                         "cannot be read at rows %d..%d: %s", y, y + rows - 1, db_gdal_complaint());
-        } else {
-            count_pixels(c, pixels, (size_t)width * (size_t)rows);
-            hs_progress_update(&bar, (uint64_t)(y + rows));
-        }
-    }
-    hs_progress_end(&bar);
-    return result;
+    return true;
 }
 
 static int count_codes(struct census *c, GDALRasterBandH band, const char *path)
@@ -158,16 +136,10 @@ static int count_codes(struct census *c, GDALRasterBandH band, const char *path)
         return hs_error(path, "give the land cover itself; --map is for codes",
                         "holds %s values, and codes are whole numbers", GDALGetDataTypeName(type));
     }
-    const size_t row_bytes = (size_t)GDALGetRasterBandXSize(band) * sizeof(int32_t);
-    const int fit = (int)(BLOCK_BYTES / row_bytes), rows = fit > 0 ? fit : 1;
-    int32_t *pixels = malloc(row_bytes * (size_t)rows);
-    if (!pixels) {
-        return hs_error(path, NULL, "out of memory");
-    }
     c->nodata_value = GDALGetRasterNoDataValue(band, &c->has_nodata);
-    const int result = count_rows(c, band, path, pixels, rows);
-    free(pixels);
-    return result;
+    const struct db_band_walk walk = {GDT_Int32, "codes", "the file may be cut short; get it again",
+                                      count_pixels, c};
+    return db_band_walk(band, path, &walk);
 }
 
 static double share(const struct census *c, uint64_t pixels)
