@@ -57,7 +57,8 @@ static int add_items(struct hs_list *list, const char *text)
     return 0;
 }
 
-bool hs_parse_number(const char *text, double *number)
+/* The whole of `text` as a finite number. */
+static bool parse_number(const char *text, double *number)
 {
     char *end;
     errno = 0;
@@ -68,7 +69,7 @@ bool hs_parse_number(const char *text, double *number)
 /* Also false when `text` is no number. */
 static bool read_within(const struct hs_option *o, const char *text, double *number)
 {
-    return hs_parse_number(text, number) && *number >= o->low && *number <= o->high;
+    return parse_number(text, number) && *number >= o->low && *number <= o->high;
 }
 
 /* Which of the words between the bars, or -1. */
@@ -283,7 +284,7 @@ void hs_list_free(struct hs_list *list)
 int hs_split_word_number(const char *text, char *word, size_t word_size, double *number)
 {
     const size_t length = strcspn(text, ":");
-    if (text[length] != ':' || length >= word_size || !hs_parse_number(text + length + 1, number)) {
+    if (text[length] != ':' || length >= word_size || !parse_number(text + length + 1, number)) {
         return -1;
     }
     memcpy(word, text, length);

@@ -75,9 +75,6 @@ int hs_options_wrong(const struct hs_usage *usage, const char *option, const cha
 /* Free the items. Harmless on a zeroed list. */
 void hs_list_free(struct hs_list *list);
 
-/* The whole of `text` as a finite number. False, with *number undefined, where it is none. */
-bool hs_parse_number(const char *text, double *number);
-
 /* Split `text` ("polygons:0.3") at the colon: copies the word before it and reads the number after
  * it. Returns 0, or -1 when there is no colon, no number, or the word does not fit. */
 int hs_split_word_number(const char *text, char *word, size_t word_size, double *number);
