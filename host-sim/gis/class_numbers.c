@@ -178,7 +178,7 @@ static int judge(const struct db_class_numbers *n, const struct census *c, const
     }
     for (int i = 0; i < DB_CLASS_NODATA; i++) {
         if (c->counts[i] > 0 && n->class_of[i] == DB_CLASS_UNKNOWN) {
-            const bool is_named = n->are_named && i < CSLCount(names) && names[i][0];
+            const bool is_named = names && n->are_named && i < CSLCount(names) && names[i][0];
             return is_named ? refuse_name(c, path, t, names[i], i) : refuse_number(c, path, t, i);
         }
     }
