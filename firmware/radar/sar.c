@@ -114,35 +114,43 @@ enum lm_refusal lm_sar_judge(const struct lm_radar *radar, const struct lm_sar_c
                         dwell_us(radar, command, setup->relief.reference_m_q10, across_mm_s));
 }
 
+/* What the relief of a patch is read by. */
+struct relief_reader {
+    struct lm_tile_cache *tiles;
+    struct lm_geo_origin centre;
+    fx_bam_t look_azimuth;
+    uint8_t lod;
+};
+
 /* Elevation of the map at a place of a patch: so far beyond its centre, along the ray that is so
  * far to the right there, on both sides of it. */
-static int32_t elevation_m_q10(struct lm_tile_cache *tiles, uint8_t lod,
-                               const struct lm_sar_command *c, int32_t beyond_m_q8,
+static int32_t elevation_m_q10(const struct relief_reader *r, int32_t beyond_m_q8,
                                int32_t right_m_q8)
 {
-    struct lm_geo_origin centre;
-    lm_geo_set_origin(&centre, c->centre);
-    const fx_bam_t azimuth = c->look_azimuth + fx_atan2(right_m_q8, beyond_m_q8);
+    const fx_bam_t azimuth = r->look_azimuth + fx_atan2(right_m_q8, beyond_m_q8);
     const struct lm_position place =
-        lm_geo_direct(&centre, azimuth, fx_hypot_u32(right_m_q8, beyond_m_q8));
-    return lm_scan_elevation(tiles, lod, place, lm_m_q10_of_m_q6(tiles->db->mean_elevation_m_q6));
+        lm_geo_direct(&r->centre, azimuth, fx_hypot_u32(right_m_q8, beyond_m_q8));
+    return lm_scan_elevation(r->tiles, r->lod, place,
+                             lm_m_q10_of_m_q6(r->tiles->db->mean_elevation_m_q6));
 }
 
 struct lm_sar_relief lm_sar_relief_of(struct lm_tile_cache *tiles, const struct lm_radar *radar,
                                       const struct lm_sar_command *c)
 {
-    const uint8_t lod = lm_scan_lod(tiles->db, c->cell_mm);
+    struct relief_reader reader = {
+        .tiles = tiles, .look_azimuth = c->look_azimuth, .lod = lm_scan_lod(tiles->db, c->cell_mm)};
+    lm_geo_set_origin(&reader.centre, c->centre);
     const int32_t half_m_q8 = (int32_t)(radar->sar.cells * lm_m_q8_of_mm_nearest(c->cell_mm) / 2);
-    struct lm_sar_relief relief = {.reference_m_q10 = elevation_m_q10(tiles, lod, c, 0, 0)};
+    struct lm_sar_relief relief = {.reference_m_q10 = elevation_m_q10(&reader, 0, 0)};
     for (int32_t n = 0; n < RELIEF_ROWS * RELIEF_PLACES && !c->is_plan; n++) {
         const int32_t right_m_q8 =
             half_m_q8 / (RELIEF_PLACES / 2) * (n % RELIEF_PLACES - RELIEF_PLACES / 2);
         /* At the edge, and 1/8 and 1/4 of a half behind it. */
         const int32_t beyond_m_q8 = half_m_q8 + half_m_q8 / 8 * (n / RELIEF_PLACES);
         const int32_t rise_m_q10 =
-            elevation_m_q10(tiles, lod, c, beyond_m_q8, right_m_q8) - relief.reference_m_q10;
+            elevation_m_q10(&reader, beyond_m_q8, right_m_q8) - relief.reference_m_q10;
         const int32_t fall_m_q10 =
-            relief.reference_m_q10 - elevation_m_q10(tiles, lod, c, -beyond_m_q8, right_m_q8);
+            relief.reference_m_q10 - elevation_m_q10(&reader, -beyond_m_q8, right_m_q8);
         relief.far_rise_m_q10 =
             fx_max_u32(relief.far_rise_m_q10, (uint32_t)fx_max_i32(rise_m_q10, 0));
         relief.near_fall_m_q10 =
