@@ -71,12 +71,13 @@ void manual_paragraphs(const char *text)
     printf("%s", is_kept ? ".fi\n" : "");
 }
 
-void manual_lines(const char *text)
+void manual_filled(const char *text)
 {
     while (*text) {
         const size_t length = strcspn(text, "\n");
+        printf("%s", *text == ' ' ? ".br\n" : "");
         print_escaped(text, length);
-        printf("\n.br\n");
+        printf("\n");
         text += length + (text[length] == '\n');
     }
 }

@@ -11,8 +11,8 @@ void manual_text(const char *text);
 /* Paragraphs: an empty line parts them, and lines that begin with a blank keep their form. */
 void manual_paragraphs(const char *text);
 
-/* Lines that stay lines. */
-void manual_lines(const char *text);
+/* Words filled anew; a line that begins with a blank begins a line there too. */
+void manual_filled(const char *text);
 
 /* What all programs promise. */
 void manual_exit_status(void);

@@ -44,31 +44,17 @@ static int print_words(const char *text, size_t length, int indent, int column)
     return column;
 }
 
-/* Lines as they are, those too long wrapped. A line that begins with a blank keeps its form. */
-static void print_lines(const char *text, int indent)
-{
-    while (*text) {
-        const size_t length = strcspn(text, "\n");
-        if (*text == ' ') {
-            printf("%*s%.*s", indent, "", (int)length, text);
-        } else {
-            print_words(text, length, indent, 0);
-        }
-        printf("\n");
-        text += length + (text[length] == '\n');
-    }
-}
-
 /* Paragraphs filled anew. An empty line, or one that begins with a blank, ends a paragraph. */
-static void print_paragraphs(const char *text)
+static void print_paragraphs(const char *text, int indent)
 {
     int column = 0;
     while (*text) {
         const size_t length = strcspn(text, "\n");
         if (length > 0 && *text != ' ') {
-            column = print_words(text, length, 0, column);
+            column = print_words(text, length, indent, column);
         } else {
-            printf("%s%.*s\n", column > 0 ? "\n" : "", (int)length, text);
+            printf("%s%*s%.*s\n", column > 0 ? "\n" : "", length > 0 ? indent : 0, "", (int)length,
+                   text);
             column = 0;
         }
         text += length + (text[length] == '\n');
@@ -132,13 +118,13 @@ static void print_option(const struct hs_option *o)
 {
     if (o->kind == HS_HEADING) {
         printf("\n%s%s", o->name ? o->name : "", o->name ? ":\n" : "");
-        print_paragraphs(o->help);
+        print_paragraphs(o->help, 0);
         return;
     }
     const bool has_value = !hs_is_argument(o) && o->value_name;
     printf("  %s%s%s%s%s\n", hs_is_argument(o) ? "" : "--", o->name, has_value ? " " : "",
            has_value ? o->value_name : "", o->is_required ? "  (required)" : "");
-    print_lines(o->help, 6);
+    print_paragraphs(o->help, 6);
     print_range(o, "      ");
 }
 
@@ -149,7 +135,7 @@ static void print_help(const struct table *t)
            hs_program(), blank, t->usage->command);
     print_synopsis(t, print_plain);
     printf("\n\n");
-    print_paragraphs(t->usage->description);
+    print_paragraphs(t->usage->description, 0);
     printf("\nOptions:\n");
     for (size_t i = 0; i < t->count; i++) {
         print_option(&t->options[i]);
@@ -177,7 +163,7 @@ static void print_manual_option(const struct hs_option *o)
         printf("\\fR");
     }
     printf("\n");
-    manual_lines(o->help);
+    manual_filled(o->help);
     print_range(o, "");
 }
 
@@ -197,9 +183,9 @@ static void print_manual(const struct table *t)
         print_manual_option(&t->options[i]);
     }
     printf(".TP\n\\fB\\-h\\fR, \\fB\\-\\-help\\fR[=\\fIman|list\\fR]\n");
-    manual_lines(help_help);
+    manual_filled(help_help);
     printf(".TP\n\\fB\\-\\-version\\fR\n");
-    manual_lines(version_help);
+    manual_filled(version_help);
     manual_exit_status();
 }
 

@@ -80,11 +80,11 @@ static bool read_settings(struct settings *s, int argc, char **argv, int *exit_c
         OPTION("unknown-codes", HS_TEXT, unknown_codes, 0, 0, "NAME",
                "class of codes that the map leaves out, or none; left out: they are an error"),
         OPTION("reflectivity", HS_INPUT, reflectivity, 0, 0, "FILE",
-               "reflectivity (gamma, dB) on the class raster's grid\nleft out: drawn from "
+               "reflectivity (gamma, dB) on the class raster's grid; left out: drawn from "
                "the class's distribution"),
         OPTION(
             "heights", HS_INPUT, heights, 0, 0, "FILE",
-            "metres of structures and trees above the terrain\nleft out: the class table's height"),
+            "metres of structures and trees above the terrain; left out: the class table's height"),
         OPTION("cut-heights", HS_FLAG, may_cut_heights, 0, 0, NULL,
                "cut structures and trees above 1,000 m to that; otherwise they are an error"),
         OPTION("targets", HS_INPUT, targets, 0, 0, "FILE",
@@ -93,14 +93,14 @@ static bool read_settings(struct settings *s, int argc, char **argv, int *exit_c
                "footprints of buildings, walls, lines and masts (docs/database.md); left out: "
                "none"),
         OPTION("cell", HS_REAL, cell_m, 0, 10000, "METRES",
-               "about this cell size: the nearest of 0.149 m x 2^n\n"
+               "about this cell size: the nearest of 0.149 m x 2^n;\n"
                "0: the pixel size of the class raster, or else of the terrain, or the next smaller "
                "cell"),
         OPTION(
             "shift0", HS_INTEGER, shift0, 0, LM_DB_SHIFT_MAX, "N",
             "cell size as a power of two (docs/FORMATS.md, 1.2): 2^N x 9.3 mm; 0: as --cell says"),
         OPTION("centre", HS_TEXT, centre, 0, 0, "LAT,LON",
-               "place worth looking at, degrees\nleft out: the middle of the class raster or the "
+               "place worth looking at, degrees; left out: the middle of the class raster or the "
                "terrain"),
         OPTION("trust-inputs", HS_FLAG, trusts_inputs, 0, 0, NULL,
                "go on where an input looks like a mistake; the reasons are warnings then"),

@@ -53,7 +53,7 @@ static bool read_settings(struct settings *s, int argc, char **argv, int *exit_c
                "degrees; left out: what the files say of themselves, or all of them"),
         OPTION("cell", HS_REAL, cell_m, 0.2, 1000, "METRES", "side of a pixel (2)"),
         OPTION("ground", HS_INPUT, ground, 0, 0, "FILE",
-               "class raster or land cover under the vectors\nleft out: none, so that build "
+               "class raster or land cover under the vectors; left out: none, so that build "
                "decides by elevation"),
         OPTION("map", HS_INPUT, map, 0, 0, "FILE",
                "the ground is somebody's land cover: its codes, each with a class"),

@@ -144,6 +144,7 @@ TEST(the_help_names_every_option_with_range_and_default)
                                         "\nFirst.\n\n'Second -paragraph.\n",
                                         "  TRACK  (required)\n",
                                         "  --quiet\n",
+                                        "  --out FILE\n      where to .TH or not\n",
                                         "\nNumbers:\nAll of them.\n",
                                         "Range -10 to 10.\n",
                                         "Range 0 to 9; default 7.\n",
