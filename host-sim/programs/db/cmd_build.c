@@ -6,6 +6,7 @@
 #include "build/pyramid.h"
 #include "build/targets.h"
 #include "gis/gdal_start.h"
+#include "gis/sensor_tag.h"
 #include "hs/error.h"
 #include "hs/options.h"
 #include "image/codes.h"
@@ -24,6 +25,7 @@ struct settings {
     double cell_m;
     long shift0, seed;
     const char *centre, *title, *out;
+    int sensor;             /* enum hs_sensor; -1: as the reflectivity says, or X */
     uint32_t centre_bam[2]; /* latitude, longitude; when `centre` is given */
     const char *land_class, *water_class, *steep_class;
     double sea_level_m, steep_degrees, geoid_m;
@@ -82,6 +84,9 @@ static bool read_settings(struct settings *s, int argc, char **argv, int *exit_c
         OPTION("reflectivity", HS_INPUT, reflectivity, 0, 0, "FILE",
                "reflectivity (gamma, dB) on the class raster's grid; left out: drawn from "
                "the class's distribution"),
+        OPTION("sensor", HS_CHOICE, sensor, 0, 0, HS_SENSOR_WORDS,
+               "what the image is for: a radar of that band, or the infrared\nleft out: what the "
+               "reflectivity was made for, or x"),
         OPTION(
             "heights", HS_INPUT, heights, 0, 0, "FILE",
             "metres of structures and trees above the terrain; left out: the class table's height"),
@@ -236,9 +241,25 @@ static void fill_classes(struct lm_classes *to, const struct db_class_table *tab
     }
 }
 
+/* The sensor of the reflectivity raster, the one that was asked for, or X. */
+static int choose_sensor(const struct settings *s, enum hs_sensor *sensor)
+{
+    const enum hs_sensor asked = s->sensor < 0 ? HS_SENSOR_X : (enum hs_sensor)s->sensor;
+    *sensor = asked;
+    if (s->reflectivity && db_sensor_tag_read(s->reflectivity, sensor) != 0) {
+        return -1;
+    }
+    return s->sensor < 0 || asked == *sensor
+               ? 0
+               : hs_error(s->reflectivity, "make it anew with `landmass-db reflect --sensor`",
+                          "is for %s, and --sensor asks for %s", hs_sensor_title(*sensor),
+                          hs_sensor_title(asked));
+}
+
 static int read_table(struct build_context *b, const struct settings *s)
 {
-    if (db_class_table_read(&b->table, s->classes) != 0) {
+    if (choose_sensor(s, &b->sensor) != 0 || db_class_table_read(&b->table, s->classes) != 0 ||
+        db_class_table_choose(&b->table, s->classes, b->sensor) != 0) {
         return -1;
     }
     if (b->table.count > LM_DB_CLASS_NONE) {
@@ -399,10 +420,12 @@ static int read_codes(struct build_context *b, const struct settings *s)
     return resample_cover_set_codes(&b->cover, &b->codes);
 }
 
-/* Without a class raster there are no structures that could have spots. */
+/* Without a class raster there are no structures that could have spots, which are corners to a
+ * radar. */
 static void set_laws(struct build_context *b)
 {
-    const double pixel_m = b->cover.pixel_latitude_bam * IMAGE_METRES_PER_BAM;
+    const double pixel_m =
+        b->sensor == HS_SENSOR_IR ? 0 : b->cover.pixel_latitude_bam * IMAGE_METRES_PER_BAM;
     for (int i = 0; i < b->table.count; i++) {
         db_reflect_law_init(&b->laws[i], &b->table.items[i], pixel_m);
     }
@@ -568,14 +591,15 @@ static char *make_manifest(const struct build_context *b, const struct settings 
         hs_error("manifest", NULL, "out of memory");
         return NULL;
     }
-    snprintf(
-        options, sizeof options,
-        "shift0: %d\nfacings: %d\nland-class: %s\nwater-class: %s\nsea-level: %g m\nvoids-are-sea: "
-        "%d\nsteep-class: %s\n"
-        "steep-degrees: %g\nunknown-codes: %s\nheights:%s\n",
-        b->plan.shift0, b->facing.facings, s->land_class, s->water_class, s->sea_level_m,
-        s->voids_are_sea, s->steep_class ? s->steep_class : "none", s->steep_degrees,
-        s->unknown_codes ? s->unknown_codes : "refused", heights);
+    snprintf(options, sizeof options,
+             "sensor: %s\nshift0: %d\nfacings: %d\nland-class: %s\nwater-class: %s\nsea-level: %g "
+             "m\nvoids-are-sea: "
+             "%d\nsteep-class: %s\n"
+             "steep-degrees: %g\nunknown-codes: %s\nheights:%s\n",
+             hs_sensor_name(b->sensor), b->plan.shift0, b->facing.facings, s->land_class,
+             s->water_class, s->sea_level_m, s->voids_are_sea,
+             s->steep_class ? s->steep_class : "none", s->steep_degrees,
+             s->unknown_codes ? s->unknown_codes : "refused", heights);
     const struct build_manifest head = {options, &b->table, b->seed};
     build_manifest_head(out, &head);
     const int result = write_inputs(out, b, s, signatures);
@@ -829,8 +853,11 @@ static int build(const struct settings *s)
 
 int db_cmd_build(int argc, char **argv)
 {
-    struct settings s = {
-        .land_class = "vegetation", .water_class = "water", .steep_degrees = 25.0, .seed = 1};
+    struct settings s = {.land_class = "vegetation",
+                         .water_class = "water",
+                         .steep_degrees = 25.0,
+                         .seed = 1,
+                         .sensor = -1};
     int exit_code;
     const bool goes_on = read_settings(&s, argc, argv, &exit_code);
     if (goes_on) {

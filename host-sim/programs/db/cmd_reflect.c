@@ -6,6 +6,7 @@
 
 #include "gis/class_raster.h"
 #include "gis/preview.h"
+#include "gis/sensor_tag.h"
 #include "hs/error.h"
 #include "hs/png.h"
 #include "hs/progress.h"
@@ -13,7 +14,6 @@
 
 #include <math.h>
 #include <stdlib.h>
-#include <string.h>
 
 enum { NODATA_DB = -9999 };
 
@@ -21,9 +21,11 @@ static const struct hs_usage usage = {
     .command = "reflect",
     .summary = "give each pixel its radar reflectivity",
     .description =
-        "Writes the constant-gamma reflectivity of each pixel in dB at X band (Float32 GeoTIFF, "
-        "-9999 for no\n"
-        "data) from its class, by one of Heaton's two methods or from radar imagery:\n\n"
+        "Writes the constant-gamma reflectivity of each pixel in dB (Float32 GeoTIFF, -9999 for "
+        "no\n"
+        "data) from its class, by one of Heaton's two methods or from radar imagery, for a radar "
+        "at X band or\n"
+        "another --sensor of the class table:\n\n"
         "  assign  random values with the class's mean, spread, limits and texture. Predictable, "
         "and borders\n"
         "          between classes soften where their limits overlap. The value depends on the "
@@ -41,13 +43,15 @@ static const struct hs_usage usage = {
         "          edges where they meet: --patches makes each class alike in all of them.\n"
         "  radar   radar imagery (--radar), as Sentinel-1's gamma0, which is the constant-gamma "
         "reflectivity.\n"
-        "          Speckle is lessened by mean powers over --multilook pixels. Other bands than X "
-        "have other\n"
-        "          levels: it is assumed that they differ by one number of dB in each class "
+        "          Speckle is lessened by mean powers over --multilook pixels. Its band has other "
+        "levels than\n"
+        "          the sensor's: it is assumed that they differ by one number of dB in each class "
         "(--calibrate).\n"
         "          Water is uniform as above. Pixels without radar data are drawn as by assign, "
         "and counted.\n\n"
-        "Speckle is not added: the display unit does that.\n\n"
+        "Speckle is not added: the display unit does that. For the infrared the value is the "
+        "share of 8..12 um\n"
+        "radiation that is reflected, in dB.\n\n"
         "Example:\n"
         "  landmass-db reflect --class-raster scene-classes.tif --classes heaton6.classes \\\n"
         "      --method adjust --image scene.tif --out scene-gamma.tif",
@@ -56,7 +60,8 @@ static const struct hs_usage usage = {
 struct options {
     struct db_image_options image;
     struct hs_list bands;
-    const char *class_raster, *classes, *method, *out, *picture, *patches, *calibrate;
+    const char *class_raster, *classes, *out, *picture, *patches;
+    int sensor, method, calibrate; /* enum hs_sensor, method, calibration */
     struct radar_options radar;
     long seed;
     bool ignores_names;
@@ -70,24 +75,28 @@ static bool read_options(struct options *o, int argc, char **argv, int *exit_cod
         DB_CLASSES_OPTION(o->classes),
         DB_CLASS_NUMBERS_OPTION(o->ignores_names),
         {"out", HS_OUTPUT, &o->out, 0, 0, "FILE", "Where the reflectivity raster goes.", true},
-        {"method", HS_TEXT, &o->method, 0, 0, "NAME", "assign (default), adjust or radar.", false},
+        {"sensor", HS_CHOICE, &o->sensor, 0, 0, HS_SENSOR_WORDS,
+         "What the values are for: a radar at X, Ku, Ka band or millimetre waves, or thermal "
+         "infrared.",
+         false},
+        {"method", HS_CHOICE, &o->method, 0, 0, "assign|adjust|radar",
+         "How values come about; see above.", false},
         {"patches", HS_INPUT, &o->patches, 0, 0, "FILE",
          "With adjust: numbers of the pictures that the image is made of, from `import "
          "--out-mask`.",
          false},
         {"radar", HS_INPUT, &o->radar.path, 0, 0, "FILE",
          "With radar: the imagery, in any CRS and pixel size.", false},
-        {"radar-unit", HS_TEXT, &o->radar.unit, 0, 0, "NAME",
-         "What it holds: db or linear (power).", false},
+        {"radar-unit", HS_CHOICE, &o->radar.unit, 0, 0, "db|linear",
+         "What it holds: dB or linear power.", false},
         {"radar-band", HS_INTEGER, &o->radar.band, 1, 64, "N",
          "Its band, from 1; vertical polarisation is that of most radars.", false},
         {"incidence", HS_REAL, &o->radar.incidence_deg, 1, 80, "DEGREES",
          "It holds sigma0, seen at this angle from the vertical; default: it holds gamma0.", false},
         {"multilook", HS_INTEGER, &o->radar.multilook, 1, 99, "N",
          "Side, an odd number of its pixels, of the squares whose mean power is taken.", false},
-        {"calibrate", HS_TEXT, &o->calibrate, 0, 0, "NAME",
-         "class (default): each class gets the mean of the class table; scene: one number of dB "
-         "for all;\n"
+        {"calibrate", HS_CHOICE, &o->calibrate, 0, 0, "class|scene|none",
+         "class: each class gets the mean of the class table; scene: one number of dB for all;\n"
          "none: as it is.",
          false},
         {"bands", HS_LIST, &o->bands, 0, 0, "N,N",
@@ -103,8 +112,9 @@ static bool read_options(struct options *o, int argc, char **argv, int *exit_cod
     return hs_options_read(&usage, table, COUNT, argc, argv, exit_code);
 }
 
-enum method { ASSIGN, ADJUST, RADAR, METHODS };
-static const char *const methods[METHODS] = {"assign", "adjust", "radar"};
+/* In the order of the words of --method and --calibrate. */
+enum method { ASSIGN, ADJUST, RADAR };
+enum calibration { BY_CLASS, BY_SCENE, NOT_AT_ALL };
 
 enum {
     PATCHES = 65536,
@@ -230,22 +240,29 @@ static int alloc_block(struct work *w)
 static int prepare(struct work *w)
 {
     const struct options *o = w->options;
+    const enum hs_sensor sensor = (enum hs_sensor)o->sensor;
     if (db_class_table_read(&w->table, o->classes) != 0 ||
+        db_class_table_choose(&w->table, o->classes, sensor) != 0 ||
         db_class_raster_open(&w->classes, &w->numbers, o->class_raster, &w->table,
                              o->ignores_names) != 0 ||
         open_image(w) != 0 || open_patches(w) != 0 || alloc_block(w) != 0 ||
         pixel_places_open(&w->places, &w->classes.grid, o->class_raster) != 0) {
         return -1;
     }
+    const double pixel_m = sensor == HS_SENSOR_IR ? 0 : w->places.pixel_m; /* Spots are corners. */
     for (int i = 0; i < w->table.count; i++) {
-        db_reflect_law_init(&w->laws[i], &w->table.items[i], w->places.pixel_m);
+        db_reflect_law_init(&w->laws[i], &w->table.items[i], pixel_m);
         w->outcome.low[i] = INFINITY;
         w->outcome.high[i] = -INFINITY;
     }
     if (o->picture && db_preview_init(&w->preview, &w->classes.grid, 1) != 0) {
         return -1;
     }
-    return db_raster_create(&w->out, o->out, &w->classes.grid, GDT_Float32, NODATA_DB);
+    if (db_raster_create(&w->out, o->out, &w->classes.grid, GDT_Float32, NODATA_DB) != 0) {
+        return -1;
+    }
+    db_sensor_tag_write(&w->out, sensor);
+    return 0;
 }
 
 static int read_patches(struct work *w)
@@ -335,10 +352,10 @@ static double class_mean(const struct work *w, int c)
 
 static double offset_of(const struct work *w, int c)
 {
-    const char *how = w->options->calibrate;
-    return strcmp(how, "none") == 0    ? 0
-           : strcmp(how, "scene") == 0 ? w->scene_offset_db
-                                       : w->table.items[c].gamma_db - class_mean(w, c);
+    const enum calibration how = (enum calibration)w->options->calibrate;
+    return how == NOT_AT_ALL ? 0
+           : how == BY_SCENE ? w->scene_offset_db
+                             : w->table.items[c].gamma_db - class_mean(w, c);
 }
 
 /* One offset whose error over all pixels is least in square. */
@@ -448,9 +465,10 @@ static void print_radar(const struct work *w)
                    offset_of(w, c), w->table.items[c].kind == DB_KIND_WATER ? ", uniform" : "");
         }
     }
-    if (strcmp(w->options->calibrate, "none") != 0) {
-        printf("assumed: X band differs from this imagery by one number of dB in %s\n",
-               strcmp(w->options->calibrate, "class") == 0 ? "each class" : "all classes");
+    if (w->options->calibrate != NOT_AT_ALL) {
+        printf("assumed: %s differs from this imagery by one number of dB in %s\n",
+               hs_sensor_title((enum hs_sensor)w->options->sensor),
+               w->options->calibrate == BY_CLASS ? "each class" : "all classes");
     }
     if (w->filled > 0) {
         hs_warn(w->options->radar.path, NULL,
@@ -521,64 +539,36 @@ static int run(struct work *w)
     return write_picture(w) != 0 ? HS_EXIT_FAILED : HS_EXIT_OK;
 }
 
-static bool is_one_of(const char *word, const char *a, const char *b, const char *c)
-{
-    return strcmp(word, a) == 0 || strcmp(word, b) == 0 || strcmp(word, c) == 0;
-}
-
-static const char *fault_of(const struct options *o, enum method method, const char **option)
+static const char *fault_of(const struct options *o, const char **option)
 {
     *option = "--method adjust";
-    if (method == ADJUST && o->image.paths.count == 0) {
+    if (o->method == ADJUST && o->image.paths.count == 0) {
         return "needs the image for its brightness: name it with --image";
     }
     *option = "--patches";
-    if (o->patches && method != ADJUST) {
+    if (o->patches && o->method != ADJUST) {
         return "is for --method adjust; the others do not look at the image";
     }
     *option = "--radar";
-    if ((method == RADAR) != (o->radar.path != NULL)) {
+    if ((o->method == RADAR) != (o->radar.path != NULL)) {
         return "goes together with --method radar";
     }
     *option = "--radar-unit";
-    if (method == RADAR &&
-        (!o->radar.unit || !is_one_of(o->radar.unit, "db", "linear", "linear"))) {
+    if (o->method == RADAR && o->radar.unit < 0) {
         return "must say whether the imagery holds db or linear power";
     }
+    *option = "--method radar";
+    if (o->method == RADAR && o->sensor == HS_SENSOR_IR) {
+        return "takes radar imagery, which says nothing of the infrared; use assign or adjust";
+    }
     *option = "--multilook";
-    if (o->radar.multilook % 2 == 0) {
-        return "must be odd";
-    }
-    *option = "--calibrate";
-    return is_one_of(o->calibrate, "class", "scene", "none") ? NULL : "is class, scene or none";
-}
-
-/* Find the method, and whether the other options go with it. */
-static bool has_sense(struct work *w)
-{
-    const struct options *o = w->options;
-    const char *option;
-    while (w->method < METHODS && strcmp(o->method, methods[w->method]) != 0) {
-        w->method++;
-    }
-    if (w->method == METHODS) {
-        hs_error("--method", "see landmass-db reflect --help",
-                 "`%s` is neither assign nor adjust nor radar", o->method);
-        return false;
-    }
-    const char *fault = fault_of(o, w->method, &option);
-    if (fault) {
-        hs_error(option, "see landmass-db reflect --help", "%s", fault);
-    }
-    return !fault;
+    return o->radar.multilook % 2 == 0 ? "must be odd" : NULL;
 }
 
 int db_cmd_reflect(int argc, char **argv)
 {
-    struct options options = {.method = "assign",
-                              .seed = 1,
-                              .calibrate = "class",
-                              .radar = {.band = 1, .multilook = 3, .incidence_deg = NAN}};
+    struct options options = {
+        .seed = 1, .radar = {.unit = -1, .band = 1, .multilook = 3, .incidence_deg = NAN}};
     int exit_code;
     struct work *w = calloc(1, sizeof *w);
     if (!w) {
@@ -587,7 +577,9 @@ int db_cmd_reflect(int argc, char **argv)
     }
     w->options = &options;
     if (read_options(&options, argc, argv, &exit_code)) {
-        exit_code = has_sense(w) ? run(w) : HS_EXIT_USAGE;
+        const char *option, *fault = fault_of(&options, &option);
+        w->method = (enum method)options.method;
+        exit_code = fault ? hs_options_wrong(&usage, option, fault) : run(w);
     }
     free(w->block.pixels);
     free(w->block.values);

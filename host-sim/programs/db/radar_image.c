@@ -48,7 +48,7 @@ struct reading {
 static int take_powers(struct reading *t, float *power, float *weight, const uint8_t *valid,
                        size_t count)
 {
-    const bool is_db = strcmp(t->o->unit, "db") == 0;
+    const bool is_db = t->o->unit == RADAR_DB;
     for (size_t i = 0; i < count; i++) {
         const double v = (double)power[i];
         if (!valid[i]) {
@@ -103,7 +103,7 @@ static int check_unit(const struct reading *t)
     if (t->valid == 0) {
         return hs_error(t->o->path, "check its nodata value", "holds no data");
     }
-    if (strcmp(t->o->unit, "db") == 0 && (double)t->above_zero > 0.9 * (double)t->valid) {
+    if (t->o->unit == RADAR_DB && (double)t->above_zero > 0.9 * (double)t->valid) {
         return hs_error(t->o->path, "is it --radar-unit linear?",
                         "is above 0 in %.0f %% of its pixels, and ground hardly ever returns 0 dB",
                         100.0 * (double)t->above_zero / (double)t->valid);

@@ -6,8 +6,12 @@
 
 #include <gdalwarper.h>
 
+/* In the order of the words of --radar-unit. */
+enum radar_unit { RADAR_DB, RADAR_LINEAR };
+
 struct radar_options {
-    const char *path, *unit;
+    const char *path;
+    int unit; /* enum radar_unit; -1: not said */
     long band, multilook;
     double incidence_deg; /* NAN: the values are gamma0 */
 };

@@ -35,6 +35,7 @@ struct build_counts {
 struct build_context {
     struct resample_cover cover;
     struct terrain terrain;
+    enum hs_sensor sensor; /* that the reflectivities are for */
     struct db_class_table table;
     struct db_code_map codes;                 /* of the class raster, when it is a land cover */
     struct db_reflect_law laws[DB_CLASS_MAX]; /* of the table's classes */

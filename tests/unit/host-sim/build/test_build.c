@@ -735,6 +735,53 @@ TEST(steep_ground_gets_its_own_class)
     image_close(&image);
 }
 
+/* The tag of the reflectivity decides, and without a raster the option. Values of X would lie 1 to
+ * 5 dB below the classes' means. */
+TEST(an_image_has_the_levels_of_the_sensor_it_is_for)
+{
+    static const char heaton6[] = "host-sim/programs/db/classes/heaton6.classes";
+    static const struct {
+        const char *reflect, *build;
+        double soil_db;
+    } cases[] = {{"ka", "", -17.3}, {"mmw", "--sensor mmw", -15.1}, {NULL, "--sensor ku", -19}};
+    write_cover(4326, (const double[6]){8.01, 0.0003, 0, 47.19, 0, -0.0003}, 100, 90);
+    write_terrain("terrain.tif", 8.0, 47.0, 0.2, 0.25, 0.001, waves_m);
+    for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
+        char more[600] = "";
+        if (cases[i].reflect) {
+            assert_int_equal(scene_run("reflect --class-raster %s --classes %s --sensor %s --out "
+                                       "%s",
+                                       scene_path("classes.tif"), heaton6, cases[i].reflect,
+                                       scene_path("band.tif")),
+                             0);
+            snprintf(more, sizeof more, "--class-raster %s --reflectivity %s",
+                     scene_path("classes.tif"), scene_path("band.tif"));
+        }
+        assert_int_equal(scene_run("build --classes %s --terrain %s --land-class soil --out %s %s "
+                                   "%s",
+                                   heaton6, scene_path("terrain.tif"), scene_path("b.lmdb"), more,
+                                   cases[i].build),
+                         0);
+        struct image image;
+        open_sound_image(&image, "b.lmdb");
+        assert_true(fabs(image.db.classes.entry[0].gamma_db_q8 / 256.0 - cases[i].soil_db) < 0.01);
+        double sum = 0, count = 0;
+        for (int k = 0; k < 128 * 128; k++) {
+            const uint16_t cell =
+                cell_at(&image, 0, 47.164 + k / 128 * 0.0002, 8.011 + k % 128 * 0.0002);
+            if (cell != IMAGE_CELL_NONE) {
+                sum += image_gamma_db(image_cell_gamma(cell)) -
+                       image.db.classes.entry[image_cell_class(cell)].gamma_db_q8 / 256.0;
+                count++;
+            }
+        }
+        print_message("# %s: %.2f dB from the classes' means (%.0f cells)\n", cases[i].build,
+                      sum / count, count);
+        assert_true(count > 1000 && fabs(sum / count) < 0.5);
+        image_close(&image);
+    }
+}
+
 /* ---- what else must hold ---- */
 
 TEST(the_same_inputs_give_the_same_bytes)
@@ -836,6 +883,8 @@ TEST(every_bad_input_is_named_and_leaves_no_file)
         {"bad.classes", "classes.tif", "gamma.tif", "terrain.tif", "", 1, "bad.classes"},
         {SCENE_CLASSES, "classes.tif", "gamma.tif", "terrain.tif", "--water-class lava", 1,
          "no class \"lava\""},
+        {SCENE_CLASSES, "classes.tif", "gamma.tif", "terrain.tif", "--sensor ku", 1,
+         "is for X band, and --sensor asks for Ku band"},
         {SCENE_CLASSES, "classes.tif", "gamma.tif", "terrain.tif", "--cell 5 --shift0 12", 2,
          "--shift0"},
         {SCENE_CLASSES, "classes.tif", "gamma.tif", "terrain.tif", "--cell 0.01", 1, "--cell"},

@@ -2,7 +2,7 @@
  * on a raster. */
 #include "check.h"
 #include "fixture.h"
-#include "gis/raster.h"
+#include "gis/sensor_tag.h"
 #include "reflectivity/reflect.h"
 
 #include "hs/error.h"
@@ -458,6 +458,61 @@ TEST(the_command_gives_spots_to_towns_whose_pixels_are_longer_than_a_house)
     }
 }
 
+/* Spots of towns are corners, which the infrared does not see. */
+TEST(another_sensor_has_its_own_levels_and_its_name_in_the_raster)
+{
+    static const struct {
+        const char *name;
+        double mean_db, deviation_db;
+    } sensors[HS_SENSOR_COUNT] = {
+        {"x", -20, 3}, {"ku", -10, 2}, {"ka", -5, 4}, {"mmw", 3, 1}, {"ir", -13.010, 0.8686}};
+    static float values[SIDE * SIDE];
+    static uint8_t valid[SIDE * SIDE];
+    write_scene();
+    fixture_write("bands.classes",
+                  "[town]\ncolour = 3 3 3\nkind = structure\ngamma_db = -20\nspread_db = 3\n"
+                  "limits_db = -40 20\nku_db = -10 2 -30 20\nka_db = -5 4 -30 20\n"
+                  "mmw_db = 3 1 -20 20\nemissivity = 0.95 0.01\nalbedo = 0.2 0.02\n"
+                  "conductivity = 1 0.1\nheat_capacity = 2\n"
+                  "[a]\ncolour = 1 1 1\nkind = water\ngamma_db = -20\nspread_db = 3\n"
+                  "limits_db = -40 20\nku_db = -10 2 -30 20\nka_db = -5 4 -30 20\n"
+                  "mmw_db = 3 1 -20 20\nemissivity = 0.9 0.01\nalbedo = 0.2 0.02\n"
+                  "conductivity = 1 0.1\nheat_capacity = 2\n"
+                  "[b]\ncolour = 2 2 2\nkind = trees\ngamma_db = -20\nspread_db = 3\n"
+                  "limits_db = -40 20\nku_db = -10 2 -30 20\nka_db = -5 4 -30 20\n"
+                  "mmw_db = 3 1 -20 20\nemissivity = 0.9 0.01\nalbedo = 0.2 0.02\n"
+                  "conductivity = 1 0.1\nheat_capacity = 2\n");
+    for (int s = 0; s < HS_SENSOR_COUNT; s++) {
+        assert_int_equal(fixture_run(NULL, 0,
+                                     "reflect --class-raster %s --classes %s --out %s --sensor %s",
+                                     fixture_path("class.tif"), fixture_path("bands.classes"),
+                                     fixture_path("s.tif"), sensors[s].name),
+                         0);
+        read_values("s.tif", values, valid);
+        const struct moments town = measure_stripe(values, 0);
+        print_message("# %s: mean %.3f spread %.3f\n", sensors[s].name, town.mean, town.deviation);
+        assert_true(fabs(town.mean - sensors[s].mean_db) < 0.05 * sensors[s].deviation_db);
+        assert_true(fabs(town.deviation / sensors[s].deviation_db - 1) < 0.03);
+        assert_true(s != HS_SENSOR_IR || town.high < -13.010 + 3.01 * 0.8686);
+        enum hs_sensor sensor;
+        assert_int_equal(db_sensor_tag_read(fixture_path("s.tif"), &sensor), 0);
+        assert_int_equal(sensor, s);
+    }
+}
+
+TEST(a_raster_without_a_sensor_is_for_x_and_an_unknown_sensor_is_refused)
+{
+    enum hs_sensor sensor;
+    write_scene();
+    assert_int_equal(db_sensor_tag_read(fixture_path("bright.tif"), &sensor), 0);
+    assert_int_equal(sensor, HS_SENSOR_X);
+    GDALDatasetH d = GDALOpen(fixture_path("bright.tif"), GA_Update);
+    GDALSetMetadataItem(d, DB_SENSOR_ITEM, "sonar", NULL);
+    GDALClose(d);
+    assert_int_equal(db_sensor_tag_read(fixture_path("bright.tif"), &sensor), -1);
+    assert_int_equal(db_sensor_tag_read(fixture_path("none.tif"), &sensor), -1);
+}
+
 TEST(adjusted_rasters_keep_the_detail_and_make_water_uniform)
 {
     static float values[SIDE * SIDE], bright[SIDE * SIDE];
@@ -489,8 +544,15 @@ TEST(the_command_says_what_is_wrong)
     assert_true(fixture_fails(HS_EXIT_USAGE, "needs the image",
                               "reflect --method adjust --class-raster %s --classes %s --out %s",
                               raster, table, out));
-    assert_true(fixture_fails(HS_EXIT_USAGE, "neither assign nor adjust",
+    assert_true(fixture_fails(HS_EXIT_USAGE, "--method guess: needs one of its words",
                               "reflect --method guess --class-raster %s --classes %s --out %s",
+                              raster, table, out));
+    assert_true(fixture_fails(HS_EXIT_USAGE, "says nothing of the infrared",
+                              "reflect --method radar --radar %s --radar-unit db --sensor ir "
+                              "--class-raster %s --classes %s --out %s",
+                              fixture_path("bright.tif"), raster, table, out));
+    assert_true(fixture_fails(HS_EXIT_USAGE, "--calibrate best: needs one of its words",
+                              "reflect --calibrate best --class-raster %s --classes %s --out %s",
                               raster, table, out));
     assert_true(fixture_fails(HS_EXIT_FAILED, "which is no class number",
                               "reflect --class-raster %s --classes %s --out %s",
