@@ -13,7 +13,7 @@ $(call host_library, tracer,       lib fixed firmware,                          
 $(call host_library, visual,       gis lib,                                             assimp -lembree3)
 $(call host_library, realradar,    gis lib fixed firmware,                              fftw3 zlib)
 $(call host_library, netem,        tracer gis lib fixed firmware,                       openblas fftw3)
-$(call host_library, nav,          lib,                                                 proj expat zlib)
+$(call host_library, nav,          lib,                                                 proj expat zlib libzip)
 $(call host_library, bus,          lib fixed firmware drivers)
 $(call host_library, scene,        lib,                                                 gdal)
 $(call host_library, reference,    lib fixed firmware.h)

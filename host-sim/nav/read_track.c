@@ -29,32 +29,50 @@ static enum nav_format format_by_name(const char *path)
     return ends_in(path, length, ".csv")   ? NAV_FORMAT_CSV
            : ends_in(path, length, ".gpx") ? NAV_FORMAT_GPX
            : ends_in(path, length, ".igc") ? NAV_FORMAT_IGC
+           : ends_in(path, length, ".kml") ? NAV_FORMAT_KML
+           : ends_in(path, length, ".kmz") ? NAV_FORMAT_KML
                                            : NAV_FORMAT_BY_NAME;
+}
+
+static int read_kml(const char *text, size_t size, struct nav_track *t, struct nav_reading *r)
+{
+    if (!nav_is_kmz(text, size)) {
+        return nav_read_kml(text, size, t, r);
+    }
+    size_t kml_size = 0;
+    char *kml = nav_unpack_kmz(text, size, r->name, &kml_size);
+    const int result = kml ? nav_read_kml(kml, kml_size, t, r) : -1;
+    free(kml);
+    return result;
+}
+
+static int read_format(char *text, size_t size, enum nav_format format, struct nav_track *t,
+                       struct nav_reading *r)
+{
+    if ((format == NAV_FORMAT_CSV || format == NAV_FORMAT_IGC) && strlen(text) != size) {
+        return hs_error(r->name, "name the format with --format", "holds binary data, not text");
+    }
+    switch (format) {
+    case NAV_FORMAT_CSV:
+        return nav_read_csv(text, t, r);
+    case NAV_FORMAT_GPX:
+        return nav_read_gpx(text, size, t, r);
+    case NAV_FORMAT_IGC:
+        return nav_read_igc(text, t, r);
+    case NAV_FORMAT_KML:
+        return read_kml(text, size, t, r);
+    case NAV_FORMAT_BY_NAME:
+        break;
+    }
+    return hs_error(r->name, "name it with --format csv, gpx, igc or kml",
+                    "the name does not tell the format");
 }
 
 int nav_read_text(char *text, size_t size, enum nav_format format, struct nav_track *t,
                   struct nav_reading *r)
 {
     const size_t before = t->count;
-    int failed = -1;
-    if (format != NAV_FORMAT_GPX && strlen(text) != size) {
-        return hs_error(r->name, "name the format with --format", "holds binary data, not text");
-    }
-    switch (format) {
-    case NAV_FORMAT_CSV:
-        failed = nav_read_csv(text, t, r);
-        break;
-    case NAV_FORMAT_GPX:
-        failed = nav_read_gpx(text, size, t, r);
-        break;
-    case NAV_FORMAT_IGC:
-        failed = nav_read_igc(text, t, r);
-        break;
-    case NAV_FORMAT_BY_NAME:
-        return hs_error(r->name, "name it with --format csv, gpx or igc",
-                        "the name does not tell the format");
-    }
-    if (failed) {
+    if (read_format(text, size, format, t, r) != 0) {
         return -1;
     }
     r->heights_left_out = nav_track_settle_heights(t);

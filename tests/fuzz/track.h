@@ -1,4 +1,4 @@
-/* The three readers of landmass-nav behind one door. */
+/* The readers of landmass-nav behind one door. */
 #ifndef FUZZ_TRACK_H
 #define FUZZ_TRACK_H
 

@@ -43,6 +43,7 @@ static int get_track(const struct command *c, struct nav_track *t, struct findin
 {
     if (!c->has_circle && !c->has_straight) {
         f->reading.is_strict = c->is_strict;
+        f->reading.is_datum_given = c->datum != NAV_DATUM_BY_RECORD;
         if (!isnan(c->speed_ms)) {
             return read_route(c, t, &f->reading);
         }

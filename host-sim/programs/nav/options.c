@@ -110,7 +110,10 @@ static const struct hs_usage usage = {
 static const char heights_help[] =
     "GPX: above mean sea level; with a geoidheight in every point, above the ellipsoid. IGC: above "
     "the ellipsoid, or above mean sea level where a record HFALG says GEO; barometric where no fix "
-    "has a GNSS altitude. CSV: the column says it. --circle and --straight: above the ellipsoid.\n";
+    "has a GNSS altitude. KML: above mean sea level where altitudeMode is absolute; others are "
+    "above "
+    "the ground and are left out, unless --datum says what they are. CSV: the column says it. "
+    "--circle and --straight: above the ellipsoid.\n";
 
 static const char columns_help[] =
     "They are named in the first line, in any order and case: timestamp or time (ISO 8601, or "
@@ -135,8 +138,8 @@ static bool read_table(struct command *c, struct raw *raw, int argc, char **argv
                     jammer = {take_jammer, c};
     const struct hs_option options[] = {
         {"TRACK", HS_INPUT_ARGUMENT, &c->track_path, 0, 0, NULL,
-         "a .csv, .gpx or .igc file, plain or .gz; - is standard input", false},
-        {"format", HS_CHOICE, &raw->format, 0, 0, "csv|gpx|igc",
+         "a .csv, .gpx, .igc, .kml or .kmz file, plain or .gz; - is standard input", false},
+        {"format", HS_CHOICE, &raw->format, 0, 0, "csv|gpx|igc|kml",
          "of the track, when the name of the file does not tell", false},
         {"strict", HS_FLAG, &c->is_strict, 0, 0, NULL,
          "stop at the first line that cannot be used; otherwise such lines are left out, counted "

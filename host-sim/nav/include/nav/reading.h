@@ -10,13 +10,15 @@ enum { NAV_WARNINGS_SHOWN = 5 };
 /* Result of a reading. A line that is malformed or not later than the one before is left out,
  * counted, and (the first NAV_WARNINGS_SHOWN) warned about with its line number. */
 struct nav_reading {
-    const char *name;  /* for messages; borrowed */
-    bool is_strict;    /* the first such line is an error instead */
-    size_t malformed;  /* lines that cannot be read as a fix */
-    size_t disordered; /* fixes not later than the one before */
-    size_t missing;    /* lines that honestly say that there was no fix */
-    bool is_route;     /* read the points of a route or a track without their times: time_us is
-                          0, and nav_fly_route gives the flight */
+    const char *name;    /* for messages; borrowed */
+    bool is_strict;      /* the first such line is an error instead */
+    size_t malformed;    /* lines that cannot be read as a fix */
+    size_t disordered;   /* fixes not later than the one before */
+    size_t missing;      /* lines that honestly say that there was no fix */
+    bool is_route;       /* read the points of a route or a track without their times: time_us is
+                            0, and nav_fly_route gives the flight */
+    bool is_datum_given; /* the user says what heights are measured from: KML's are taken even
+                            where the file says that they are above the ground */
     size_t heights_left_out; /* barometric ones among others */
 };
 

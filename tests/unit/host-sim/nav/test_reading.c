@@ -1,63 +1,17 @@
 /* Tracks from files, good ones and bad ones. */
 #include "check.h"
 #include "hs/rng.h"
-#include "nav/read_track.h"
-#include "support.h"
+#include "read_text.h"
 
-#include <fcntl.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
 
-struct result {
-    struct nav_track track;
-    struct nav_reading reading;
-    int status;
-};
-
-/* Messages of readings that are meant to fail do not belong in the test's log. */
-static int hush(void)
-{
-    fflush(stderr);
-    const int saved = dup(STDERR_FILENO), null = open("/dev/null", O_WRONLY);
-    dup2(null, STDERR_FILENO);
-    close(null);
-    return saved;
-}
-
-static void unhush(int saved)
-{
-    fflush(stderr);
-    dup2(saved, STDERR_FILENO);
-    close(saved);
-}
-
-static struct result read_with(struct nav_reading reading, enum nav_format format, const char *text)
-{
-    struct result r = {.reading = reading};
-    char *copy = strdup(text);
-    const int saved = hush();
-    r.status = nav_read_text(copy, strlen(text), format, &r.track, &r.reading);
-    unhush(saved);
-    free(copy);
-    return r;
-}
-
-static struct result read_as(enum nav_format format, bool is_strict, const char *text)
-{
-    return read_with((struct nav_reading){.name = "test", .is_strict = is_strict}, format, text);
-}
-
 static struct result read_csv(const char *text)
 {
     return read_as(NAV_FORMAT_CSV, false, text);
-}
-
-static void assert_near(double is, double wanted, double tolerance)
-{
-    assert_true(fabs(is - wanted) <= tolerance);
 }
 
 TEST(csv_columns_come_in_any_order_case_and_unit)
@@ -163,13 +117,10 @@ TEST(what_is_no_track_is_an_error)
         assert_int_equal(r.status, -1);
         nav_track_free(&r.track);
     }
-    struct nav_track t = {0};
-    struct nav_reading r = {0};
-    const int saved = hush();
-    assert_int_equal(nav_read_track("/nowhere/a.csv", NAV_FORMAT_BY_NAME, &t, &r), -1);
-    assert_int_equal(nav_read_track("/dev/null", NAV_FORMAT_BY_NAME, &t, &r), -1);
-    assert_int_equal(nav_read_track("/", NAV_FORMAT_CSV, &t, &r), -1);
-    unhush(saved);
+    static const char *const files[] = {"/nowhere/a.csv", "/dev/null", "/"};
+    for (size_t i = 0; i < sizeof files / sizeof *files; i++) {
+        assert_int_equal(read_file((struct nav_reading){0}, files[i]).status, -1);
+    }
 }
 
 #define GPX_POINT(lat, time)                                                                       \
@@ -277,12 +228,6 @@ TEST(gpx_heights_are_above_the_ellipsoid_where_every_point_has_a_geoid)
     assert_int_equal(r.track.datum, NAV_DATUM_SEA_LEVEL);
     assert_near(r.track.fix[0].height_m, 500, 0);
     nav_track_free(&r.track);
-}
-
-/* Points as a route, in the order of the file, whatever their times. */
-static struct result read_route(enum nav_format format, const char *text)
-{
-    return read_with((struct nav_reading){.name = "test", .is_route = true}, format, text);
 }
 
 TEST(points_without_times_are_read_as_a_route)
