@@ -33,7 +33,6 @@ struct laid {
 /* Part of a group, as in c/layover.c. */
 struct pass {
     int32_t first, most_16ths;
-    bool is_last;           /* no cell is left for another pass */
     uint8x16_t place_16ths; /* 0..32; anything above for those that take no part */
 };
 
@@ -47,12 +46,20 @@ static inline void store_16(int32_t *to, int32x4x4_t x)
     neon_store_8_and_8(to, to + 8, x);
 }
 
+/* Look up sixteen bytes in a row of a table. The compiler must not load it before `after` is known:
+ * it has no registers for several rows, and would copy them to the stack and back. */
+static inline uint8x16_t look_up(const uint8_t row[64], uint8x16_t after, uint8x16_t place)
+{
+    __asm__("" : "+r"(row) : "w"(after));
+    return vqtbl4q_u8(vld1q_u8_x4(row), place);
+}
+
 static inline int32x4x4_t sum_16(int32x4x4_t a_q8, int32x4x4_t b_q8)
 {
     const struct neon_db_sum at = neon_db_sum_of(a_q8, b_q8);
-    const uint8x16_t low = vqtbl4q_u8(vld1q_u8_x4(fx_table_db_sum_lines[0]), at.line);
-    const uint8x16_t high = vqtbl4q_u8(vld1q_u8_x4(fx_table_db_sum_lines[1]), at.line);
-    const uint8x16_t fall = vqtbl4q_u8(vld1q_u8_x4(fx_table_db_sum_lines[2]), at.line);
+    const uint8x16_t low = look_up(fx_table_db_sum_lines[0], at.line, at.line);
+    const uint8x16_t high = look_up(fx_table_db_sum_lines[1], low, at.line);
+    const uint8x16_t fall = look_up(fx_table_db_sum_lines[2], high, at.line);
     return neon_db_sum_raise(low, high, fall, at.place, a_q8, b_q8);
 }
 
@@ -103,14 +110,10 @@ static inline bool take(struct pass *p, uint32_t group, int16x8x2_t *away_16ths)
     const int16x8_t reach = vdupq_n_s16(REACH_16THS), nowhere = vdupq_n_s16(NOWHERE);
     p->first = (int32_t)group + (least >> 4);
     p->place_16ths = vqmovun_high_s16(vqmovun_s16(beyond[0]), beyond[1]);
-    p->most_16ths = vmaxvq_u8(p->place_16ths);
+    const uint8x16_t is_now = vcleq_u8(p->place_16ths, vdupq_n_u8(REACH_16THS));
+    p->most_16ths = vmaxvq_u8(vandq_u8(p->place_16ths, is_now));
     for (size_t n = 0; n < 2; n++) {
         away_16ths->val[n] = vbslq_s16(vcleq_s16(beyond[n], reach), nowhere, away_16ths->val[n]);
-    }
-    p->is_last = p->most_16ths <= REACH_16THS;
-    if (!p->is_last) {
-        const uint8x16_t is_now = vcleq_u8(p->place_16ths, vdupq_n_u8(REACH_16THS));
-        p->most_16ths = vmaxvq_u8(vandq_u8(p->place_16ths, is_now));
     }
     return true;
 }
@@ -230,8 +233,10 @@ void lm_k_layover(const struct lm_k_layover *lent, int32_t *laid_db_q8)
     const int32_t margin = LM_K_LAYOVER_MARGIN, cells = (int32_t)line->cells;
     const struct tables tables = load_tables(line);
     struct laid laid = {laid_db_q8 + margin, -margin};
-    for (int32_t i = 0; i < margin + (cells + GROUP - 1) / GROUP * GROUP + margin; i += 4) {
-        vst1q_s32(laid_db_q8 + i, vdupq_n_s32(LM_LEVEL_SHADOW));
+    const int32x4_t dark = vdupq_n_s32(LM_LEVEL_SHADOW);
+    const int32x4x4_t all_dark = {{dark, dark, dark, dark}};
+    for (int32_t i = 0; i < margin + cells + margin; i += GROUP) {
+        store_16(laid_db_q8 + i, all_dark);
     }
     for (uint32_t group = 0; group < line->cells; group += GROUP) {
         int32x4x4_t level_db_q8 = load_16(line->level_db_q8 + group);
@@ -240,13 +245,10 @@ void lm_k_layover(const struct lm_k_layover *lent, int32_t *laid_db_q8)
         for (size_t k = 0; k < 4; k++) {
             level_db_q8.val[k] = vsubq_s32(level_db_q8.val[k], vdupq_n_s32(ALL_DB_Q8));
         }
-        do {
-            if (!take(&p, group, &away_16ths)) {
-                break;
-            }
+        while (take(&p, group, &away_16ths)) {
             if (p.first >= -margin && p.first < cells) {
                 lay(&laid, &tables, &p, level_db_q8);
             }
-        } while (!p.is_last);
+        }
     }
 }

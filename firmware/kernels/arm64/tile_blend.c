@@ -32,12 +32,17 @@ struct neon_map {
     uint8x16_t marks, height_dm[2];
 };
 
-/* Where sixteen places are, in their tiles, and which half of a turn is stored where: the second
- * half of a last odd group is stored below the first. */
+/* Where sixteen places are: north and east. */
+struct neon_places {
+    uint32x4_t north[4], east[4];
+};
+
+/* Which half of a turn is stored where: the second half of a last odd group is stored below the
+ * first. It goes by value, because what is stored through it might change it. */
 struct neon_turn {
     uint32_t *cell, *elevation;
     size_t next;
-    uint32_t north[PLACES], east[PLACES];
+    const struct neon_places *at;
 };
 
 /* The four cells around each place: south-west, south-east, north-west, north-east. */
@@ -203,17 +208,16 @@ static inline int16x8x2_t neon_bends(uint8x16x4_t texels, struct neon_way east)
                           vmlal_high_s8(vmull_high_s8(west_bend, left), east_bend, on)}};
 }
 
-static inline struct neon_grown neon_grown_at(const struct neon_map *map,
-                                              const struct neon_turn *turn)
+static inline struct neon_grown neon_grown_at(const struct neon_map *map, struct neon_turn turn)
 {
-    const uint32x4x4_t north = vld1q_u32_x4(turn->north), east = vld1q_u32_x4(turn->east);
+    const uint32x4_t *const north = turn.at->north, *const east = turn.at->east;
     uint16x8_t north_q4[2], east_q4[2];
     uint16_t offset[PLACES];
     for (size_t h = 0; h < 2; h++) {
-        north_q4[h] = vuzp1q_u16(vreinterpretq_u16_u32(vshlq_u32(north.val[2 * h], map->down)),
-                                 vreinterpretq_u16_u32(vshlq_u32(north.val[2 * h + 1], map->down)));
-        east_q4[h] = vuzp1q_u16(vreinterpretq_u16_u32(vshlq_u32(east.val[2 * h], map->down)),
-                                vreinterpretq_u16_u32(vshlq_u32(east.val[2 * h + 1], map->down)));
+        north_q4[h] = vuzp1q_u16(vreinterpretq_u16_u32(vshlq_u32(north[2 * h], map->down)),
+                                 vreinterpretq_u16_u32(vshlq_u32(north[2 * h + 1], map->down)));
+        east_q4[h] = vuzp1q_u16(vreinterpretq_u16_u32(vshlq_u32(east[2 * h], map->down)),
+                                vreinterpretq_u16_u32(vshlq_u32(east[2 * h + 1], map->down)));
         vst1q_u16(offset + LM_LANES * h, neon_texel_offsets(north_q4[h], east_q4[h]));
     }
     __asm__("" : "+m"(offset));
@@ -301,7 +305,7 @@ static inline bool neon_needs_grown(const struct neon_winner of[4])
 }
 
 /* Find the winners, and take the weights of all but their cells away. */
-static inline uint8x16_t neon_contest(const struct neon_map *map, const struct neon_turn *turn,
+static inline uint8x16_t neon_contest(const struct neon_map *map, struct neon_turn turn,
                                       struct neon_corners *c, int16x8_t crown_q16[2])
 {
     struct neon_grown grown = {vdupq_n_s8(0), {vdupq_n_s16(0), vdupq_n_s16(0)}};
@@ -351,7 +355,7 @@ static inline int16x8_t neon_more_db_q8(uint16x8_t gamma_sum, uint8x8_t share)
 }
 
 /* Store the cells of a turn, and what the means of their reflectivities are above them. */
-static inline void neon_store_cells(const struct neon_corners *c, const struct neon_turn *turn,
+static inline void neon_store_cells(const struct neon_corners *c, struct neon_turn turn,
                                     struct neon_cell best, uint8x16_t weight, uint8x16_t share)
 {
     uint16x8_t low = vmull_u8(vget_low_u8(c->weight[0]), vget_low_u8(c->gamma[0]));
@@ -366,10 +370,10 @@ static inline void neon_store_cells(const struct neon_corners *c, const struct n
     const uint16x8_t second = vreinterpretq_u16_u8(vzip2q_u8(best.low, best.gamma));
     const uint16x8_t more = vreinterpretq_u16_s16(neon_more_db_q8(low, vget_low_u8(share)));
     const uint16x8_t further = vreinterpretq_u16_s16(neon_more_db_q8(high, vget_high_u8(share)));
-    vst1q_u16((uint16_t *)(turn->cell + turn->next), vzip1q_u16(second, further));
-    vst1q_u16((uint16_t *)(turn->cell + turn->next + 4), vzip2q_u16(second, further));
-    vst1q_u16((uint16_t *)turn->cell, vzip1q_u16(first, more));
-    vst1q_u16((uint16_t *)(turn->cell + 4), vzip2q_u16(first, more));
+    vst1q_u16((uint16_t *)(turn.cell + turn.next), vzip1q_u16(second, further));
+    vst1q_u16((uint16_t *)(turn.cell + turn.next + 4), vzip2q_u16(second, further));
+    vst1q_u16((uint16_t *)turn.cell, vzip1q_u16(first, more));
+    vst1q_u16((uint16_t *)(turn.cell + 4), vzip2q_u16(first, more));
 }
 
 /* Heights of the codes of sixteen cells. */
@@ -420,7 +424,7 @@ static inline int32x4x4_t neon_higher_of_16(const struct neon_map *map,
 
 /* Add to the elevations what the means of heights and the crowns are above the codes' heights. */
 static inline void neon_add_heights(const struct neon_map *map, const struct neon_corners *c,
-                                    const struct neon_turn *turn, uint8x16_t low, uint8x16_t share,
+                                    struct neon_turn turn, uint8x16_t low, uint8x16_t share,
                                     bool do_differ, const int16x8_t crown_q16[2])
 {
     const uint16x8x2_t own_dm = neon_heights_dm(map, low);
@@ -439,7 +443,7 @@ static inline void neon_add_heights(const struct neon_map *map, const struct neo
             vaddq_s32(more.val[2 * h + 1],
                       vqdmulhq_s32(second, vshll_n_s16(vget_high_s16(crown_q16[h]), 15)));
     }
-    int32_t *const low_half = (int32_t *)turn->elevation, *const high_half = low_half + turn->next;
+    int32_t *const low_half = (int32_t *)turn.elevation, *const high_half = low_half + turn.next;
     const int32x4x4_t ground = neon_load_8_and_8(low_half, high_half);
     vst1q_s32(high_half, vaddq_s32(ground.val[2], more.val[2]));
     vst1q_s32(high_half + 4, vaddq_s32(ground.val[3], more.val[3]));
@@ -448,11 +452,6 @@ static inline void neon_add_heights(const struct neon_map *map, const struct neo
 }
 
 /* ---- a turn ---- */
-
-/* Where sixteen places are: north and east. */
-struct neon_places {
-    uint32x4x4_t north, east;
-};
 
 /* Elevation of the terrain at eight places. */
 static inline void neon_elevations(const struct neon_places *at, size_t half, const uint32_t *scale,
@@ -463,46 +462,45 @@ static inline void neon_elevations(const struct neon_places *at, size_t half, co
     const uint16x8x4_t f = vld4q_u16((const uint16_t *)north);
     const struct neon_posts posts = {s.val[1], s.val[3], f.val[1], f.val[3]};
     const uint32x4x2_t post_q16 =
-        neon_bilerp(&posts, neon_weights(at->east.val[2 * half], at->east.val[2 * half + 1]),
-                    neon_weights(at->north.val[2 * half], at->north.val[2 * half + 1]));
+        neon_bilerp(&posts, neon_weights(at->east[2 * half], at->east[2 * half + 1]),
+                    neon_weights(at->north[2 * half], at->north[2 * half + 1]));
     elevation[0] = neon_elevation(vld1q_u32(scale), post_q16.val[0]);
     elevation[1] = neon_elevation(vld1q_u32(scale + 4), post_q16.val[1]);
 }
 
 /* Store the elevations of the terrain, and find the four cells around each place. */
-static inline void neon_read(const struct neon_map *map, const struct neon_turn *turn,
-                             const struct neon_places *at, struct neon_corners *c)
+static inline void neon_read(const struct neon_map *map, struct neon_turn turn,
+                             struct neon_corners *c)
 {
+    const struct neon_places *const at = turn.at;
     uint32_t offset[2 * PLACES];
     neon_pair south[PLACES], north[PLACES];
     uint16x8_t u[2], v[2];
     uint32x4_t elevation[4];
-    uint32x4x4_t n_q25, e_q25, of_posts, of_cells;
+    uint32x4_t n_q25[4], e_q25[4];
     for (size_t h = 0; h < 4; h++) {
-        const uint32x4_t record = vld1q_u32(turn->cell + 4 * (h % 2) + (h < 2 ? 0 : turn->next));
-        n_q25.val[h] = neon_half_on(at->north.val[h]);
-        e_q25.val[h] = neon_half_on(at->east.val[h]);
-        of_posts.val[h] = neon_offsets(record, at->north.val[h], at->east.val[h]);
-        of_cells.val[h] = neon_corner_offsets(record, n_q25.val[h], e_q25.val[h]);
+        const uint32x4_t record = vld1q_u32(turn.cell + 4 * (h % 2) + (h < 2 ? 0 : turn.next));
+        n_q25[h] = neon_half_on(at->north[h]);
+        e_q25[h] = neon_half_on(at->east[h]);
+        vst1q_u32(offset + 4 * h, neon_offsets(record, at->north[h], at->east[h]));
+        vst1q_u32(offset + PLACES + 4 * h, neon_corner_offsets(record, n_q25[h], e_q25[h]));
     }
-    vst1q_u32_x4(offset, of_posts);
-    vst1q_u32_x4(offset + PLACES, of_cells);
     for (size_t h = 0; h < 2; h++) {
-        u[h] = neon_fractions(e_q25.val[2 * h], e_q25.val[2 * h + 1]);
-        v[h] = neon_fractions(n_q25.val[2 * h], n_q25.val[2 * h + 1]);
+        u[h] = neon_fractions(e_q25[2 * h], e_q25[2 * h + 1]);
+        v[h] = neon_fractions(n_q25[2 * h], n_q25[2 * h + 1]);
     }
     neon_set_weights(c, u, v);
     __asm__("" : "+m"(offset));
     for (size_t k = 0; k < PLACES; k += 4) {
         neon_fetch(&map->posts, offset + k, south + k, north + k);
     }
-    uint32_t *const further = turn->elevation + turn->next;
-    neon_elevations(at, 0, turn->elevation, south, north, elevation);
+    uint32_t *const further = turn.elevation + turn.next;
+    neon_elevations(at, 0, turn.elevation, south, north, elevation);
     neon_elevations(at, 1, further, south + LM_LANES, north + LM_LANES, elevation + 2);
     vst1q_u32(further, elevation[2]);
     vst1q_u32(further + 4, elevation[3]);
-    vst1q_u32(turn->elevation, elevation[0]);
-    vst1q_u32(turn->elevation + 4, elevation[1]);
+    vst1q_u32(turn.elevation, elevation[0]);
+    vst1q_u32(turn.elevation + 4, elevation[1]);
     for (size_t k = 0; k < PLACES; k += 4) {
         neon_fetch(&map->cells, offset + PLACES + k, south + k, north + k);
     }
@@ -517,11 +515,10 @@ static inline void neon_read(const struct neon_map *map, const struct neon_turn 
 }
 
 /* Blend the cells of a turn. */
-static inline void neon_blend(const struct neon_map *map, const struct neon_turn *turn,
-                              const struct neon_places *at)
+static inline void neon_blend(const struct neon_map *map, struct neon_turn turn)
 {
     struct neon_corners c;
-    neon_read(map, turn, at, &c);
+    neon_read(map, turn, &c);
     for (size_t n = 0; n < 4; n++) {
         c.kind[n] = vshrq_n_u8(c.low[n], 4);
     }
@@ -569,12 +566,11 @@ void lm_k_tile_blend(const struct lm_k_blend *map, const struct lm_tile_coords *
          turn.cell += PLACES, turn.elevation += PLACES) {
         struct neon_places at;
         for (size_t h = 0; h < 4; h++) {
-            at.north.val[h] = neon_next(&north_track);
-            at.east.val[h] = neon_next(&east_track);
+            at.north[h] = neon_next(&north_track);
+            at.east[h] = neon_next(&east_track);
         }
-        vst1q_u32_x4(turn.north, at.north);
-        vst1q_u32_x4(turn.east, at.east);
         turn.next = turn.cell + LM_LANES == end ? 0 : LM_LANES;
-        neon_blend(&look_up, &turn, &at);
+        turn.at = &at;
+        neon_blend(&look_up, turn);
     }
 }
