@@ -21,7 +21,7 @@ $(GEN)/bin/%:
 	$(Q)$(HOSTCC) $^ -lm -o $@
 
 gen_objs = $(patsubst %.c,$(GEN)/host/%.o,$(1))
-GEN_error := $(call gen_objs,$(addprefix host-sim/lib/,atomic_file.c error.c input_file.c))
+GEN_error := $(call gen_objs,$(addprefix host-sim/lib/,atomic_file.c error.c input_file.c json.c report.c))
 GEN_options := $(call gen_objs,$(addprefix host-sim/lib/,menu.c options.c options_help.c manual.c output_path.c))
 
 $(GEN)/bin/tables: $(call gen_objs,$(wildcard host-sim/tables/*.c host-sim/programs/tables/*.c)) $(GEN_options) $(GEN_error)

@@ -1,5 +1,6 @@
 #include "image/codes.h"
 
+#include "hs/report.h"
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -33,6 +34,15 @@ void image_heights_text(const uint16_t table_dm[16], char *text, size_t room)
     for (int i = 0; i < 16 && used < room; i++) {
         used += (size_t)snprintf(text + used, room - used, " %g", table_dm[i] / 10.0);
     }
+}
+
+void image_heights_report(const uint16_t table_dm[16])
+{
+    hs_report_array("heights_m");
+    for (int i = 0; i < 16; i++) {
+        hs_report_put(NULL, table_dm[i] / 10.0);
+    }
+    hs_report_close();
 }
 
 /* What the rule of coarser cells asks of the class table. */

@@ -3,6 +3,7 @@
 #include "fx/crc32c.h"
 #include "hs/error.h"
 #include "hs/input_file.h"
+#include "hs/report.h"
 #include "hs/signature_file.h"
 #include "hs/zero_bytes.h"
 #include "image/grid.h"
@@ -17,18 +18,31 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+static void report_finding(uint64_t offset, const char *cause)
+{
+    hs_report_object(NULL);
+    hs_report_put("offset_bytes", offset);
+    hs_report_put("cause", cause);
+    hs_report_close();
+}
+
 void image_find(struct image_findings *f, uint64_t offset, const char *cause, ...)
 {
     f->count++;
-    if (!f->out || f->count > f->shown_max) {
+    if ((!f->out && !f->is_reported) || f->count > f->shown_max) {
         return;
     }
+    char text[512];
     va_list arguments;
     va_start(arguments, cause);
-    fprintf(f->out, "offset 0x%08" PRIx64 ": ", offset);
-    vfprintf(f->out, cause, arguments);
-    fputc('\n', f->out);
+    vsnprintf(text, sizeof text, cause, arguments);
     va_end(arguments);
+    if (f->out) {
+        fprintf(f->out, "offset 0x%08" PRIx64 ": %s\n", offset, text);
+    }
+    if (f->is_reported) {
+        report_finding(offset, text);
+    }
 }
 
 int image_map(struct image *image, const char *path)
@@ -361,7 +375,7 @@ int image_open(struct image *image, const char *path)
     if (image_map(image, path) != 0) {
         return -1;
     }
-    struct image_findings findings = {stderr, 0, 4};
+    struct image_findings findings = {stderr, 0, 4, false};
     if (image_read_tables(image, &findings) != 0 || findings.count > 0) {
         const bool is_other_version = image->header.version != LM_DB_VERSION &&
                                       memcmp(image->header.magic, "LANDMASS", 8) == 0;

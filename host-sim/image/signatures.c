@@ -1,10 +1,12 @@
 #include "image/signatures.h"
 
+#include "hs/report.h"
 #include "hs/signature_file.h"
 #include "image/grid.h"
 
 #include <inttypes.h>
 #include <math.h>
+#include <stdbool.h>
 #include <stdio.h>
 
 void image_name_print(const char name[16])
@@ -25,17 +27,39 @@ static double mean_rcs_dbsm(const struct lm_signature *s)
     return 10 * log10(sum / db_signature_chips(s));
 }
 
+static void report_signature(const struct lm_signature *s, bool is_sound)
+{
+    hs_report_object(NULL);
+    hs_report_text_within("name", s->name, sizeof s->name);
+    hs_report_put("is_sound", is_sound);
+    if (is_sound) {
+        hs_report_put("aspects", s->aspects);
+        hs_report_put("pixel_m", s->pixel_mm / 1000.0);
+        hs_report_put("height_m", s->height_mm / 1000.0);
+        hs_report_put("mean_rcs_dbsm", mean_rcs_dbsm(s));
+        hs_report_array("depressions_deg");
+        for (int d = 0; d < s->depressions; d++) {
+            hs_report_put(NULL, image_degrees((int32_t)s->depression[d]));
+        }
+        hs_report_close();
+    }
+    hs_report_close();
+}
+
 void image_signatures_print(const struct image *image)
 {
     if (image->db.signature_count == 0) {
         return;
     }
     printf("\nsignature  name              aspects  pixel m  height m  mean dBsm  depressions\n");
+    hs_report_array("signatures");
     for (uint32_t i = 0; i < image->db.signature_count; i++) {
         const struct lm_signature *s = &image->signatures[i];
         printf("%9" PRIu32 "  ", i);
         image_name_print(s->name);
-        if (lm_signature_check(s, image->db.chip_count) != LM_OK) {
+        const bool is_sound = lm_signature_check(s, image->db.chip_count) == LM_OK;
+        report_signature(s, is_sound);
+        if (!is_sound) {
             puts("  damaged");
             continue;
         }
@@ -46,6 +70,7 @@ void image_signatures_print(const struct image *image)
         }
         putchar('\n');
     }
+    hs_report_close();
 }
 
 static void check_chips(const struct image *image, uint32_t number, struct image_findings *findings)

@@ -1,6 +1,7 @@
 #include "hs/atomic_file.h"
 #include "hs/error.h"
 #include "hs/input_file.h"
+#include "hs/report.h"
 
 #include <errno.h>
 #include <signal.h>
@@ -185,6 +186,7 @@ int hs_atomic_rename(const char *temporary, const char *path)
     }
     if (rename(temporary, path) == 0) {
         forget(temporary);
+        hs_report_file(path);
         return 0;
     }
     const int cause = errno;

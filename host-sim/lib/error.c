@@ -1,9 +1,11 @@
 #include "hs/error.h"
 
 #include "hs/input_file.h"
+#include "hs/report.h"
 
 #include <stdarg.h>
 #include <stdio.h>
+#include <stdlib.h>
 
 static const char *program_name = "landmass";
 
@@ -18,23 +20,26 @@ const char *hs_program(void)
     return program_name;
 }
 
-static void report(const char *place, const char *severity, const char *remedy, const char *cause,
+static void report(const char *place, bool is_error, const char *remedy, const char *cause,
                    va_list arguments)
 {
-    fflush(stdout);
-    fprintf(stderr, "%s: %s: %s", program_name, place, severity);
-    vfprintf(stderr, cause, arguments);
-    if (remedy) {
-        fprintf(stderr, "; %s", remedy);
+    char *text = NULL;
+    if (vasprintf(&text, cause, arguments) < 0) {
+        text = NULL;
     }
-    fputc('\n', stderr);
+    const char *said = text ? text : cause;
+    fflush(stdout);
+    fprintf(stderr, "%s: %s: %s%s%s%s\n", program_name, place, is_error ? "" : "warning: ", said,
+            remedy ? "; " : "", remedy ? remedy : "");
+    hs_report_message(is_error ? "error" : "warning", place, said, remedy);
+    free(text);
 }
 
 int hs_error(const char *place, const char *remedy, const char *cause, ...)
 {
     va_list arguments;
     va_start(arguments, cause);
-    report(place, "", remedy, cause, arguments);
+    report(place, true, remedy, cause, arguments);
     va_end(arguments);
     return -1;
 }
@@ -43,7 +48,7 @@ int hs_warn(const char *place, const char *remedy, const char *cause, ...)
 {
     va_list arguments;
     va_start(arguments, cause);
-    report(place, "warning: ", remedy, cause, arguments);
+    report(place, false, remedy, cause, arguments);
     va_end(arguments);
     return 0;
 }
@@ -54,7 +59,7 @@ int hs_doubt(bool is_trusted, const char *place, const char *remedy, const char 
     snprintf(whole, sizeof whole, "%s, or say --trust-inputs if it is right", remedy);
     va_list arguments;
     va_start(arguments, cause);
-    report(place, is_trusted ? "warning: " : "", is_trusted ? NULL : whole, cause, arguments);
+    report(place, !is_trusted, is_trusted ? NULL : whole, cause, arguments);
     va_end(arguments);
     return is_trusted ? 0 : -1;
 }

@@ -1,6 +1,7 @@
 #include "hs/menu.h"
 
 #include "hs/error.h"
+#include "hs/report.h"
 #include "lm/version.h"
 #include "manual.h"
 
@@ -82,7 +83,7 @@ int hs_menu_main(const struct hs_menu *menu, int argc, char **argv)
             if (menu->start) {
                 menu->start();
             }
-            return menu->commands[i].run(argc - 1, argv + 1);
+            return hs_report_end(menu->commands[i].run(argc - 1, argv + 1));
         }
     }
     char remedy[96];

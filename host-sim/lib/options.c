@@ -4,6 +4,7 @@
 #include "hs/error.h"
 #include "hs/input_file.h"
 #include "hs/output_path.h"
+#include "hs/report.h"
 #include "options_help.h"
 
 #include <errno.h>
@@ -21,6 +22,8 @@ struct reader {
     char **argv;
     int next;           /* word of argv */
     size_t next_option; /* where to look for the next argument that is no option */
+    const char *json;   /* where the report goes, or NULL */
+    struct hs_option json_option;
 };
 
 static int usage_error(const struct hs_usage *usage, const char *option, const char *cause)
@@ -150,7 +153,8 @@ static const struct hs_option *find(const struct reader *r, const char *name, si
             return o;
         }
     }
-    return NULL;
+    const char *json = r->json_option.name;
+    return strlen(json) == length && strncmp(json, name, length) == 0 ? &r->json_option : NULL;
 }
 
 static int store_or_report(const struct reader *r, const struct hs_option *o, const char *text)
@@ -220,13 +224,13 @@ static void note_inputs(const struct hs_option *o)
 }
 
 /* All inputs first: an option's place in the table must not matter. */
-static int claim_outputs(const struct hs_option *options, size_t count)
+static int claim_outputs(const struct reader *r)
 {
-    for (size_t i = 0; i < count; i++) {
-        note_inputs(&options[i]);
+    for (size_t i = 0; i < r->count; i++) {
+        note_inputs(&r->options[i]);
     }
-    for (size_t i = 0; i < count; i++) {
-        const struct hs_option *o = &options[i];
+    for (size_t i = 0; i < r->count; i++) {
+        const struct hs_option *o = &r->options[i];
         const bool is_output = o->kind == HS_OUTPUT || o->kind == HS_OUTPUT_ARGUMENT;
         if ((is_output && is_given(o) && hs_output_claim(*(const char **)o->target) != 0) ||
             (o->kind == HS_FOLDER && is_given(o) &&
@@ -235,6 +239,17 @@ static int claim_outputs(const struct hs_option *options, size_t count)
         }
     }
     return 0;
+}
+
+/* The report's own file is claimed last: a report that says why an output was refused must not be
+ * written in that output's place. */
+static int begin_report(const struct reader *r)
+{
+    if (r->json && hs_report_begin(r->usage->command, r->json) != 0) {
+        return -1;
+    }
+    const int claimed = claim_outputs(r);
+    return hs_report_claim() == 0 ? claimed : -1;
 }
 
 static int check_required(const struct reader *r)
@@ -259,7 +274,8 @@ bool hs_options_read(const struct hs_usage *usage, const struct hs_option *optio
             return false;
         }
     }
-    struct reader r = {usage, options, count, argc, argv, 1, 0};
+    struct reader r = {usage, options, count, argc, argv, 1, 0, NULL, {0}};
+    r.json_option = hs_json_option(&r.json);
     *exit_code = HS_EXIT_USAGE;
     while (r.next < argc) {
         if (read_one(&r) != 0) {
@@ -270,7 +286,7 @@ bool hs_options_read(const struct hs_usage *usage, const struct hs_option *optio
         return false;
     }
     *exit_code = HS_EXIT_FAILED;
-    return claim_outputs(options, count) == 0;
+    return begin_report(&r) == 0;
 }
 
 void hs_list_free(struct hs_list *list)

@@ -20,6 +20,19 @@ static const char version_help[] = "Print the version.";
 
 enum { WIDTH = 79 };
 
+struct hs_option hs_json_option(const char **path)
+{
+    return (struct hs_option){
+        "json",
+        HS_OUTPUT,
+        path,
+        0,
+        0,
+        "FILE",
+        "Write the report as JSON too; `-`: to standard output, the text to standard error.",
+        false};
+}
+
 /* The words of one line, wrapped at WIDTH. Returns the column behind them. */
 static int print_words(const char *text, size_t length, int indent, int column)
 {
@@ -140,9 +153,10 @@ static void print_help(const struct table *t)
     for (size_t i = 0; i < t->count; i++) {
         print_option(&t->options[i]);
     }
-    printf("%s  -h, --help[=man|list]\n      %s\n  --version\n      %s\n",
-           t->count > 0 && t->options[t->count - 1].kind == HS_HEADING ? "\n" : "", help_help,
-           version_help);
+    printf("%s", t->count > 0 && t->options[t->count - 1].kind == HS_HEADING ? "\n" : "");
+    const struct hs_option json = hs_json_option(NULL);
+    print_option(&json);
+    printf("  -h, --help[=man|list]\n      %s\n  --version\n      %s\n", help_help, version_help);
 }
 
 static void print_manual_option(const struct hs_option *o)
@@ -182,6 +196,8 @@ static void print_manual(const struct table *t)
     for (size_t i = 0; i < t->count; i++) {
         print_manual_option(&t->options[i]);
     }
+    const struct hs_option json = hs_json_option(NULL);
+    print_manual_option(&json);
     printf(".TP\n\\fB\\-h\\fR, \\fB\\-\\-help\\fR[=\\fIman|list\\fR]\n");
     manual_filled(help_help);
     printf(".TP\n\\fB\\-\\-version\\fR\n");
@@ -208,6 +224,11 @@ static const char *source_of(const struct hs_option *o)
     }
 }
 
+static void print_list_line(const struct hs_option *o)
+{
+    printf("--%s\t%s\t%s\n", o->name, o->value_name ? o->value_name : "", source_of(o));
+}
+
 /* A line an option: its name, its value and what that may be completed from (file, folder, or words
  * between bars), with tabs between. An argument has no name, and a flag no value. */
 static void print_list(const struct table *t)
@@ -217,9 +238,11 @@ static void print_list(const struct table *t)
         if (hs_is_argument(o)) {
             printf("\t%s\t%s\n", o->name, source_of(o));
         } else if (o->kind != HS_HEADING) {
-            printf("--%s\t%s\t%s\n", o->name, o->value_name ? o->value_name : "", source_of(o));
+            print_list_line(o);
         }
     }
+    const struct hs_option json = hs_json_option(NULL);
+    print_list_line(&json);
     printf("--help\t\t\n--version\t\t\n");
 }
 

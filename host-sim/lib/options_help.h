@@ -10,6 +10,9 @@ static inline bool hs_is_argument(const struct hs_option *o)
     return o->kind == HS_INPUT_ARGUMENT || o->kind == HS_OUTPUT_ARGUMENT;
 }
 
+/* The option that every command has besides its own: the file of its report (hs/report.h). */
+struct hs_option hs_json_option(const char **path);
+
 /* Print what `word` asks for. "--help" or "-h": the text for a reader; "--help=man": a manual page;
  * "--help=list": a line an option, which the shell's completion reads; "--version": the program's.
  * Returns false when it asks for none of these. */

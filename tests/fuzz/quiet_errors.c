@@ -10,6 +10,11 @@ void hs_set_program(const char *name)
     (void)name;
 }
 
+const char *hs_program(void)
+{
+    return "fuzz";
+}
+
 static void format(const char *place, const char *remedy, const char *cause, va_list arguments)
 {
     char text[4096];

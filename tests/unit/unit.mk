@@ -112,6 +112,8 @@ endef
 $(eval $(call unit_script,bsp/panel-linux/test_package.sh))
 $(eval $(call unit_script,host-sim/package/test_package.sh))
 $(eval $(call unit_script,host-sim/programs/bus/test_forms.py))
+$(eval $(call unit_script,host-sim/programs/json/test_json.py))
 $(UNIT)/bsp/panel-linux/test_package: $(PANEL) $(wildcard bsp/panel-linux/debian/*)
 $(UNIT)/host-sim/package/test_package: $(PROGRAMS) $(wildcard host-sim/package/*)
+$(UNIT)/host-sim/programs/json/test_json: | $(HOST_PROGRAMS:%=$(O)/bin/landmass-%)
 $(UNIT)/host-sim/programs/bus/test_forms: | $(O)/bin/landmass-bus $(GEN)/bin/bus_table

@@ -50,7 +50,7 @@ static void print_missing(const struct image *image)
 static int check_new(const char *path)
 {
     struct image image;
-    struct image_findings findings = {stderr, 0, 10};
+    struct image_findings findings = {stderr, 0, 10, false};
     struct image_verify_counts counts;
     if (image_map(&image, path) != 0) {
         return -1;

@@ -2,10 +2,12 @@
 
 #include "hs/error.h"
 #include "hs/options.h"
+#include "hs/report.h"
 #include "image/codes.h"
 #include "image/verify.h"
 
 #include <inttypes.h>
+#include <stdbool.h>
 #include <stdio.h>
 #include <string.h>
 
@@ -18,6 +20,18 @@ static const struct hs_usage usage = {
     "What is wrong is printed with its offset; the exit code is then 1."};
 
 enum { SHOWN_MAX = 100 };
+
+static void report_counts(const struct image *image, const struct image_findings *findings,
+                          const struct image_verify_counts *n, bool is_complete)
+{
+    hs_report_put("fault_count", findings->count);
+    hs_report_put("is_complete", is_complete);
+    hs_report_put("bytes", image->size_bytes);
+    hs_report_put("entries", n->entries);
+    hs_report_put("tiles", n->tiles);
+    hs_report_put("shared_edges", n->edges);
+    hs_report_put("tiles_against_level_above", n->children);
+}
 
 int db_cmd_verify(int argc, char **argv)
 {
@@ -34,19 +48,23 @@ int db_cmd_verify(int argc, char **argv)
     if (image_map(&image, path) != 0) {
         return HS_EXIT_FAILED;
     }
-    struct image_findings findings = {stdout, 0, SHOWN_MAX};
+    struct image_findings findings = {stdout, 0, SHOWN_MAX, true};
     struct image_verify_counts n = {0};
-    const int is_complete = image_verify(&image, &findings, &n) == 0;
+    hs_report_array("faults");
+    const bool is_complete = image_verify(&image, &findings, &n) == 0;
+    hs_report_close();
     if (findings.count > SHOWN_MAX) {
         printf("and %" PRIu64 " more\n", findings.count - SHOWN_MAX);
     }
     printf("%s: %" PRIu64 " bytes, %" PRIu64 " entries, %" PRIu64 " tiles, %" PRIu64
            " shared edges, %" PRIu64 " tiles against the level above\n",
            path, image.size_bytes, n.entries, n.tiles, n.edges, n.children);
+    report_counts(&image, &findings, &n, is_complete);
     if (is_complete) {
         char heights[160];
         image_heights_text(image.db.classes.height_dm, heights, sizeof heights);
         printf("heights of the codes, m:%s\n", heights);
+        image_heights_report(image.db.classes.height_dm);
     }
     image_close(&image);
     if (findings.count > 0) {

@@ -1,6 +1,7 @@
 /* landmass-nav: a recorded or invented flight as traffic of the avionics bus. */
 #include "hs/atomic_file.h"
 #include "hs/error.h"
+#include "hs/report.h"
 #include "nav/route.h"
 #include "options.h"
 
@@ -172,11 +173,10 @@ int main(int argc, char **argv)
     hs_set_program("landmass-nav");
     struct command c;
     int exit_code;
-    if (!nav_options_read(&c, argc, argv, &exit_code)) {
-        return exit_code;
-    }
     struct nav_track track = {0};
-    const int failed = run(&c, &track);
+    if (nav_options_read(&c, argc, argv, &exit_code)) {
+        exit_code = run(&c, &track) == 0 ? HS_EXIT_OK : HS_EXIT_FAILED;
+    }
     nav_track_free(&track);
-    return failed ? HS_EXIT_FAILED : HS_EXIT_OK;
+    return hs_report_end(exit_code);
 }

@@ -1,6 +1,7 @@
 /* landmass-scene: the built-in scene, so that everything can be tried without anybody's data. */
 #include "hs/error.h"
 #include "hs/options.h"
+#include "hs/report.h"
 #include "scene/exemplars.h"
 #include "scene/output.h"
 
@@ -135,9 +136,9 @@ int main(int argc, char **argv)
     hs_set_program("landmass-scene");
     struct command c;
     int exit_code;
-    if (!parse_command(&c, argc, argv, &exit_code)) {
-        return exit_code;
+    if (parse_command(&c, argc, argv, &exit_code)) {
+        GDALAllRegister();
+        exit_code = run(&c) == 0 ? HS_EXIT_OK : HS_EXIT_FAILED;
     }
-    GDALAllRegister();
-    return run(&c) == 0 ? HS_EXIT_OK : HS_EXIT_FAILED;
+    return hs_report_end(exit_code);
 }

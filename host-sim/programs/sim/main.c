@@ -8,6 +8,7 @@
 #include "hs/input_file.h"
 #include "hs/png.h"
 #include "hs/progress.h"
+#include "hs/report.h"
 #include "lm/bus_filters.h"
 #include "sim/bezel.h"
 #include "sim/hands.h"
@@ -317,5 +318,5 @@ int main(int argc, char **argv)
         fclose(s->log_file);
     }
     free(s);
-    return exit_code;
+    return hs_report_end(exit_code);
 }

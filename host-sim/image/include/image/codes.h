@@ -25,6 +25,9 @@ uint8_t image_height_code(const uint16_t table_dm[16], double height_dm);
 /* The heights of codes 0..15 as text, metres, each with a space before it. 160 bytes are enough. */
 void image_heights_text(const uint16_t table_dm[16], char *text, size_t room);
 
+/* The same as the array "heights_m" of the report (hs/report.h). */
+void image_heights_report(const uint16_t table_dm[16]);
+
 static inline uint16_t image_cell(uint8_t gamma_code, uint8_t class_number, uint8_t height_code)
 {
     return (uint16_t)(gamma_code << 8 | class_number << 4 | height_code);

@@ -7,6 +7,7 @@
 #include "lm/signature.h"
 #include "lm/target.h"
 
+#include <stdbool.h>
 #include <stddef.h>
 #include <stdint.h>
 #include <stdio.h>
@@ -15,6 +16,7 @@
 struct image_findings {
     FILE *out; /* borrowed; NULL: count only */
     uint64_t count, shown_max;
+    bool is_reported; /* also as items of the array that is open in the report (hs/report.h) */
 };
 
 /* Note one more finding, in printf's manner. `offset` is in bytes into the image. */

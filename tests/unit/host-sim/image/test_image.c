@@ -305,7 +305,7 @@ static void build_tiny(struct tiny_image *image, double latitude, double longitu
 static uint64_t faults_of(const void *bytes, size_t size)
 {
     struct image image;
-    struct image_findings findings = {NULL, 0, 0};
+    struct image_findings findings = {NULL, 0, 0, false};
     struct image_verify_counts counts;
     image_lend(&image, bytes, size);
     image_verify(&image, &findings, &counts);
@@ -315,7 +315,7 @@ static uint64_t faults_of(const void *bytes, size_t size)
 static void print_faults(const void *bytes, size_t size)
 {
     struct image image;
-    struct image_findings findings = {stdout, 0, 10};
+    struct image_findings findings = {stdout, 0, 10, false};
     struct image_verify_counts counts;
     image_lend(&image, bytes, size);
     image_verify(&image, &findings, &counts);
@@ -391,7 +391,7 @@ TEST(a_cut_or_lengthened_image_is_found)
 static void look_at(const uint8_t *bytes, size_t size)
 {
     struct image image;
-    struct image_findings findings = {NULL, 0, 0};
+    struct image_findings findings = {NULL, 0, 0, false};
     image_lend(&image, bytes, size);
     if (image_read_tables(&image, &findings) != 0) {
         return;

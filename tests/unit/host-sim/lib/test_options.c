@@ -169,7 +169,7 @@ TEST(the_list_for_the_shell_has_every_option_and_its_value)
                         "\tTRACK\tfile\n\tSECOND\tfile\n--quiet\t\t\n--out\tFILE\t\n"
                         "--item\tNAME\t\n--height\tM\t\n--count\tN\t\n"
                         "--format\tcsv|gpx|igc\tcsv|gpx|igc\n--into\tDIR\tfolder\n"
-                        "--pair\tA,B\t\n--help\t\t\n--version\t\t\n");
+                        "--pair\tA,B\t\n--json\tFILE\tfile\n--help\t\t\n--version\t\t\n");
 }
 
 TEST(the_manual_page_escapes_what_would_be_a_command)
