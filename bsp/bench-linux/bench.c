@@ -68,6 +68,7 @@ int bench_open(struct bench *b, const char *database, const struct bench_glass *
                                  .can = bus->can,
                                  .bus_profile = bus->profile,
                                  .bus_node = bus->node,
+                                 .tells_reports = bus->tells_reports,
                                  .hardware_revision = 1,
                                  .controls = controls,
                                  .display = &b->display,

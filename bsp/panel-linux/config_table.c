@@ -29,6 +29,8 @@ const struct config_row config_table[] = {
     OPTION(
         CONFIG_NUMBER, can_node, 0, 255, NULL, "can.node", "0..255", "0",
         "The panel's node on a CANaerospace bus, where it answers requests; 0: it only listens."),
+    OPTION(CONFIG_CHOICE, can_reports, 0, 0, "off on", "can.reports", "off | on", "off",
+           "Whether that node tells cursor, designated place, mode and state (docs/bus.md)."),
     OPTION(CONFIG_NUMBER, seed, 0, 2147483647, NULL, "seed", "0..2147483647", "0",
            "Another number gives another speckle, and nothing else."),
     OPTION(CONFIG_NUMBER, tiles, 120, 512, NULL, "tiles", "120..512", "384",

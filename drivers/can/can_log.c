@@ -1,5 +1,6 @@
 #include "drv/can_log.h"
 
+#include <inttypes.h>
 #include <string.h>
 
 /* The longest line that candump writes is 72 characters for classic CAN; FD's are refused anyway.
@@ -264,4 +265,16 @@ struct lm_can drv_can_log_port(struct drv_can_log *log)
 bool drv_can_log_is_over(const struct drv_can_log *log)
 {
     return log->is_over;
+}
+
+int drv_can_log_write(FILE *out, const char *interface, uint64_t time_us,
+                      const struct lm_can_frame *frame)
+{
+    fprintf(out, "(%" PRIu64 ".%06u) %s %0*" PRIX32 "#", time_us / 1000000,
+            (unsigned)(time_us % 1000000), interface, frame->is_extended ? 8 : 3, frame->id);
+    for (uint32_t i = 0; i < frame->length; i++) {
+        fprintf(out, "%02X", frame->data[i]);
+    }
+    fputc('\n', out);
+    return ferror(out) ? LM_ERR_IO : LM_OK;
 }

@@ -87,6 +87,13 @@ void lm_canas_service_take(struct lm_canas_service *s, const struct lm_can_frame
     }
 }
 
+void lm_canas_service_tell_state(struct lm_canas_service *s, uint64_t now_us)
+{
+    if (s->node != 0) {
+        ask(&s->is_sts_asked, &s->sts_asked_us, now_us);
+    }
+}
+
 /* Drop a request that has waited too long, or whose time is ahead because the clock was set
  * back. */
 static void expire(struct lm_canas_service *s, bool *is_asked, uint64_t *asked_us, uint64_t now_us)

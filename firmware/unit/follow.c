@@ -13,16 +13,12 @@ static void follow_view(struct lm_unit *u)
     lm_picture_follow_view(&u->picture, (u->flags & LM_FLAGS_STANDING) != 0);
 }
 
-/* Read the elevations under cursor and aircraft. */
-static void read_elevations(struct lm_unit *u)
+int32_t lm_elevation_at(struct lm_unit *u, struct lm_position position)
 {
-    if (u->map.is_usable) {
-        const uint8_t lod = lm_scan_lod(&u->map.db, ELEVATION_CELL_MM);
-        u->cursor_elevation_m_q10 =
-            lm_scan_elevation(&u->map.tiles, lod, u->cursor.position, LM_NO_ELEVATION);
-        u->ground_m_q10 = lm_scan_elevation(&u->map.tiles, lod, lm_ownship_position(&u->ownship),
-                                            LM_NO_ELEVATION);
-    }
+    return u->map.is_usable
+               ? lm_scan_elevation(&u->map.tiles, lm_scan_lod(&u->map.db, ELEVATION_CELL_MM),
+                                   position, LM_NO_ELEVATION)
+               : LM_NO_ELEVATION;
 }
 
 /* Change the range scale as the cursor asks, if the range is automatic. */
@@ -51,7 +47,8 @@ void lm_follow_cursor(struct lm_unit *u, uint64_t now_us)
         return;
     }
     lm_cursor_locate(&u->cursor, &scene);
-    read_elevations(u);
+    u->cursor_elevation_m_q10 = lm_elevation_at(u, u->cursor.position);
+    u->ground_m_q10 = lm_elevation_at(u, lm_ownship_position(&u->ownship));
     if (u->picture.is_cursor_awaited && u->cursor.is_placed) {
         lm_apply_effects(u, LM_EFFECT_SECTOR, now_us);
     }

@@ -8,6 +8,7 @@
 #include "lm/version.h"
 #include "pacing.h"
 #include "present.h"
+#include "report.h"
 
 static void init_picture(struct lm_unit *u)
 {
@@ -43,8 +44,9 @@ int lm_unit_init(struct lm_unit *u, const struct lm_board *board)
     const struct lm_bus_profile *bus = board->bus_profile ? board->bus_profile : &lm_bus_canas17;
     lm_bus_init(&u->bus, bus);
     lm_nav_init(&u->nav);
-    lm_canas_service_init(&u->service, bus->framing == LM_BUS_CANAEROSPACE ? board->bus_node : 0,
-                          board->hardware_revision, LM_VERSION_NUMBER);
+    const uint8_t node = bus->framing == LM_BUS_CANAEROSPACE ? board->bus_node : 0;
+    lm_canas_service_init(&u->service, node, board->hardware_revision, LM_VERSION_NUMBER);
+    lm_canas_report_init(&u->report, board->tells_reports ? node : 0);
     lm_unit_weather_init(&u->weather);
     lm_page_init(&u->page, board->radar);
     u->ground_m_q10 = LM_NO_ELEVATION;
@@ -125,6 +127,7 @@ void lm_unit_step(struct lm_unit *u, uint64_t now_us)
     lm_follow_cursor(u, now_us);
     lm_unit_map_service(&u->map, now_us);
     draw_lines(u, now_us);
+    lm_send_reports(u, now_us);
     if (now_us >= u->next_frame_us) {
         lm_show_frame(u, now_us);
     }

@@ -3,6 +3,7 @@
 #include "drv/can_log.h"
 #include "hs/error.h"
 #include "lm/bus.h"
+#include "lm/canas_report.h"
 
 #include <errno.h>
 #include <math.h>
@@ -113,6 +114,40 @@ static void print_event(FILE *out, const struct lm_bus_profile *profile,
     }
 }
 
+/* The display's own frame of this identifier, or NULL. */
+static const struct lm_report_row *report_of(const struct lm_can_frame *f)
+{
+    for (int i = 0; i < LM_REPORT_ITEMS; i++) {
+        if (lm_report_rows[i].id == f->id && !f->is_extended) {
+            return &lm_report_rows[i];
+        }
+    }
+    return NULL;
+}
+
+/* What a frame of the display says, when it is well formed and has a value. */
+static void print_report(FILE *out, const struct lm_report_row *row, const struct lm_can_frame *f)
+{
+    const struct lm_canas_type *t = &lm_canas_types[row->type];
+    if (f->length < 4 || f->data[1] != row->type ||
+        f->length != 4 + t->element_bytes * t->elements) {
+        return;
+    }
+    const char *name = row->unit;
+    for (unsigned i = 0; t->elements > 1 && i < t->elements; i++) {
+        const int length = (int)strcspn(name, " ");
+        fprintf(out, "%s%.*s %u", i == 0 ? " = " : ", ", length, name,
+                element_at(f->data + 4, i, t->element_bytes));
+        name += length + (name[length] == ' ');
+    }
+    if (t->elements == 1) {
+        const uint32_t word = element_at(f->data + 4, 0, t->element_bytes);
+        const int32_t number = t->element_bytes == 1 ? (int8_t)word : (int32_t)word;
+        fprintf(out, " = %.*f %s", row->per_unit > 1000 ? 7 : 3, (double)number / row->per_unit,
+                row->unit);
+    }
+}
+
 static const char *name_of(const struct lm_bus_profile *profile, const struct lm_can_frame *f)
 {
     for (int i = 0; i < profile->row_count; i++) {
@@ -146,6 +181,10 @@ static void print_frame(struct decoder *d, const struct lm_can_frame *f)
     fprintf(d->out, f->is_extended || f->is_error ? "%08X" : "     %03X", f->id);
     const char *name = name_of(profile, f);
     const bool is_canas = profile->framing == LM_BUS_CANAEROSPACE && !f->is_error && !f->is_remote;
+    const struct lm_report_row *report = is_canas && name == NULL ? report_of(f) : NULL;
+    if (report != NULL) {
+        name = report->name;
+    }
     if (name != NULL) {
         fprintf(d->out, " %s:", name);
     }
@@ -155,7 +194,10 @@ static void print_frame(struct decoder *d, const struct lm_can_frame *f)
     for (uint32_t i = 0; i < count; i++) {
         print_event(d->out, profile, &events[i]);
     }
-    if (count == 0) {
+    if (report != NULL) {
+        print_report(d->out, report, f);
+    }
+    if (count == 0 && report == NULL) {
         fprintf(d->out, " [%s]", f->is_error ? "report of the controller" : news(&before, &d->bus));
     }
     if (is_canas && f->length >= 4 &&

@@ -3,6 +3,7 @@
 #include "drv/can_socket.h"
 #include "lm/bus_filters.h"
 #include "lm/canas.h"
+#include "lm/canas_report.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -116,6 +117,19 @@ void bus_print_fields(FILE *out)
     for (int i = 0; i < LM_BUS_FIELDS; i++) {
         fprintf(out, "%-18s %s\n", lm_bus_fields[i].name,
                 lm_bus_scale_of((enum lm_bus_field)i)->bus_unit);
+    }
+}
+
+void bus_print_reports(FILE *out)
+{
+    fprintf(out,
+            "| id | hex | item | type | unit or bytes | counts in a unit | period ms |\n"
+            "|---|---|---|---|---|---|---|\n");
+    for (int i = 0; i < LM_REPORT_ITEMS; i++) {
+        const struct lm_report_row *row = &lm_report_rows[i];
+        fprintf(out, "| %u | %03X | %s | %s | %s | %d | %u |\n", row->id, row->id, row->name,
+                lm_canas_types[row->type].name, row->unit, row->per_unit,
+                lm_report_period_us[row->set] / 1000);
     }
 }
 
@@ -235,6 +249,29 @@ static void print_canas_message(FILE *out, const struct lm_bus_profile *profile,
     }
 }
 
+/* A number, or bytes that have names. All but the header is there only if the type is not NODATA.
+ */
+static void print_report_message(FILE *out, const struct lm_report_row *row, int index)
+{
+    const struct lm_canas_type *t = &lm_canas_types[row->type];
+    char multiplex[8], name[DBC_NAME_BYTES];
+    snprintf(multiplex, sizeof multiplex, "m%u ", row->type);
+    fprintf(out, "\nBO_ %u display_", row->id);
+    print_name(out, row->name, index);
+    fprintf(out, ": 8 landmass\n");
+    print_header_signals(out, true);
+    const char *word = row->unit;
+    for (unsigned i = 0; i < t->elements; i++) {
+        const int length = (int)strcspn(word, " ");
+        snprintf(name, sizeof name, t->elements == 1 ? "value" : "%.*s", length, word);
+        const bool is_signed = t->kind == LM_CANAS_KIND_SIGNED;
+        print_signal(out, &(struct signal){name, multiplex, 4 + i * t->element_bytes,
+                                           t->element_bytes, is_signed, 1.0 / row->per_unit, 0,
+                                           is_signed ? 0 : 255, t->elements == 1 ? word : ""});
+        word += length + (word[length] == ' ');
+    }
+}
+
 /* The display's own frames. */
 static void print_service_messages(FILE *out)
 {
@@ -245,6 +282,9 @@ static void print_service_messages(FILE *out)
     fprintf(out, "\nBO_ 1500 display_state: 8 landmass\n");
     print_header_signals(out, false);
     fprintf(out, " SG_ flags : 39|32@0+ (1,0) [0|4294967295] \"\" Vector__XXX\n");
+    for (int i = 0; i < LM_REPORT_ITEMS; i++) {
+        print_report_message(out, &lm_report_rows[i], i);
+    }
 }
 
 static bool are_one_frame(const struct lm_bus_row *a, const struct lm_bus_row *b)

@@ -107,6 +107,21 @@ def down_and_up(m):
     p.until(is_fine)
 
 
+@case("as a node that tells reports, it puts the cursor on the bus ten times a second, and a place when there is one")
+def tells(m):
+    fly(m)
+    p = Panel(m, can__node=20, can__reports="on")
+    p.until(is_fine)
+    frames = m.do("timeout 5 candump -L vcan0,5E6:7FF,5DC:7FF,5EC:7FF || true").splitlines()
+    cursor = [f.split()[-1] for f in frames if "5E6#" in f]
+    codes = [int(f[10:12], 16) for f in cursor]
+    expect(35 <= len(cursor) <= 60, len(cursor), "frames of the cursor in some five seconds", p.said()[-500:])
+    expect(all(f.startswith("5E6#140300") and len(f) == 20 for f in cursor), cursor[:3])
+    expect(all((b - a) % 256 == 1 for a, b in zip(codes, codes[1:])), codes)
+    expect(all(f.endswith("#140000" + f[-2:]) for f in frames if "5EC#" in f), "a designated place without a patch")
+    expect(any("5DC#1405" in f for f in frames), "no state word")
+
+
 @case("so it is with an interface that is removed and comes back")
 def removed_and_back(m):
     p = in_flight(m)

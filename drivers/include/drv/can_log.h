@@ -66,4 +66,9 @@ bool drv_can_log_is_over(const struct drv_can_log *log);
  * or the cause, in static memory, with *frame unspecified. */
 const char *drv_can_log_parse(const char *line, struct lm_can_frame *frame);
 
+/* Write a frame as a line of such a log. `interface` has no blanks. A frame is no controller's
+ * report and no remote frame. Returns LM_OK, or LM_ERR_IO when writing failed. */
+int drv_can_log_write(FILE *out, const char *interface, uint64_t time_us,
+                      const struct lm_can_frame *frame);
+
 #endif

@@ -25,6 +25,8 @@ static int print_for(FILE *out, const struct command *c)
         bus_print_dbc(out, c->profile);
     } else if (strcmp(c->name, "filters") == 0) {
         bus_print_filters(out, c->profile);
+    } else if (strcmp(c->name, "reports") == 0) {
+        bus_print_reports(out);
     } else if (strcmp(c->name, "fields") == 0) {
         bus_print_fields(out);
     } else if (c->log_path == NULL || strcmp(c->log_path, "-") == 0) {
@@ -139,6 +141,8 @@ static const struct hs_usage usages[] = {
      "To try a table of your own on recorded traffic before it is built in:\n"
      "\n"
      "  landmass-bus decode --table my.bus flight.log"},
+    {"reports", "what the display tells the other avionics, as a table of Markdown",
+     "The same whatever the profile: reports are frames of CANaerospace."},
     {"fields", "the fields that a table of your own may name, and their units",
      "docs/bus.md explains the table."},
 };

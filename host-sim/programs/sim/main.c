@@ -4,6 +4,7 @@
 
 #include "drv/can_log.h"
 #include "drv/can_socket.h"
+#include "hs/atomic_file.h"
 #include "hs/error.h"
 #include "hs/input_file.h"
 #include "hs/png.h"
@@ -33,6 +34,9 @@ struct sim {
     struct drv_can_log log;
     struct drv_can_socket socket;
     struct lm_can can;
+    struct hs_atomic_file sent; /* of --bus-out */
+    struct lm_can heard;        /* the bus behind it */
+    uint64_t now_us;            /* of the step */
     struct hands hands;
     struct bezel bezel;
     uint32_t *bezel_pixels; /* owned; NULL when no bezel is asked for */
@@ -46,6 +50,33 @@ static int no_bus(void *ctx, struct lm_can_frame *frame)
     (void)ctx;
     (void)frame;
     return 0;
+}
+
+static int hear(void *ctx, struct lm_can_frame *frame)
+{
+    const struct sim *s = ctx;
+    return s->heard.receive(s->heard.ctx, frame);
+}
+
+/* Send to the bus, if it is one that can be sent to, and into the log. */
+static int send_and_log(void *ctx, const struct lm_can_frame *frame)
+{
+    struct sim *s = ctx;
+    const int status = s->heard.send ? s->heard.send(s->heard.ctx, frame) : LM_OK;
+    if (status == LM_OK) {
+        (void)drv_can_log_write(s->sent.stream, "can0", s->now_us, frame); /* commit tells */
+    }
+    return status;
+}
+
+static int open_sent_log(struct sim *s)
+{
+    if (!s->options.bus_out) {
+        return 0;
+    }
+    s->heard = s->can;
+    s->can = (struct lm_can){.ctx = s, .receive = hear, .send = send_and_log};
+    return hs_atomic_open(&s->sent, s->options.bus_out);
 }
 
 static void report_malformed(void *ctx, uint32_t line, const char *cause)
@@ -163,6 +194,7 @@ static int step(struct sim *s, uint64_t now_us)
         drv_can_log_set_now(&s->log, now_us);
     }
     const uint32_t before = s->bench.pictures;
+    s->now_us = now_us;
     lm_unit_step(s->bench.unit, now_us);
     return s->bench.pictures != before ? serve_picture(s) : 0;
 }
@@ -218,6 +250,11 @@ static void print_summary(const struct sim *s)
         bus->count.outcome[LM_BUS_BAD_LENGTH], bus->count.outcome[LM_BUS_BAD_NODE],
         bus->count.outcome[LM_BUS_BAD_TYPE], bus->count.outcome[LM_BUS_NOT_A_NUMBER],
         bus->count.outcome[LM_BUS_OUT_OF_RANGE]);
+    const struct lm_canas_report *r = &u->report;
+    if (r->node != 0) {
+        printf("     told: %u frames; %u sets cut short, %u frames lost\n", r->count.sent,
+               r->count.cut, r->count.lost);
+    }
     const struct lm_weather_bus *w = &u->weather.bus;
     if (w->count.sets + w->count.torn + w->count.refused + w->count.numbers != 0) {
         printf(
@@ -271,11 +308,12 @@ static int run(struct sim *s)
         return hs_error(o->png_folder, "check the folder above it", "cannot be made: %s",
                         strerror(errno));
     }
-    if (script_read(&s->script, o->script, &lm_radar_default) != 0 || open_bus(s) != 0) {
+    if (script_read(&s->script, o->script, &lm_radar_default) != 0 || open_bus(s) != 0 ||
+        open_sent_log(s) != 0) {
         return -1;
     }
     hands_init(&s->hands, &s->script.port);
-    const struct bench_bus bus = {&s->can, o->profile, o->node};
+    const struct bench_bus bus = {&s->can, o->profile, o->node, o->tells_reports};
     const struct bench_glass glass = {o->width_px, o->height_px, o->glass};
     if (bench_open(&s->bench, o->database, &glass, o->seed, &bus, &s->hands.port) != 0) {
         return hs_error(o->database, "landmass-db build makes a database", "%s", s->bench.error);
@@ -290,7 +328,10 @@ static int run(struct sim *s)
         bench_close(&s->bench);
         return -1;
     }
-    const int status = fly(s);
+    int status = fly(s);
+    if (status == 0 && o->bus_out) {
+        status = hs_atomic_commit(&s->sent);
+    }
     if (status == 0 && !o->is_quiet) {
         print_summary(s);
     }
@@ -314,6 +355,7 @@ int main(int argc, char **argv)
     script_free(&s->script);
     free(s->bezel_pixels);
     drv_can_socket_close(&s->socket);
+    hs_atomic_abort(&s->sent);
     if (s->log_file) {
         fclose(s->log_file);
     }

@@ -101,6 +101,10 @@ static bool read_table(struct options *o, struct raw *raw, int argc, char **argv
          "what the bus's frames mean: a profile of docs/bus.md (canas17)", false},
         {"node", HS_INTEGER, &raw->node, 0, 255, "N",
          "be this node of a CANaerospace bus and answer requests; 0: only listen", false},
+        {"reports", HS_FLAG, &o->tells_reports, 0, 0, NULL,
+         "as that node, tell cursor, designated place, mode and state (docs/bus.md)", false},
+        {"bus-out", HS_OUTPUT, &o->bus_out, 0, 0, "FILE.log",
+         "write the frames that the unit sends, as candump -L does, in flight time", false},
         {"script", HS_INPUT, &o->script, 0, 0, "FILE", "operate the controls by a script (below)",
          false},
         {"png", HS_FOLDER, &o->png_folder, 0, 0, "DIR",
@@ -139,6 +143,11 @@ static bool check(const struct options *o, int *exit_code)
 {
     if (o->bus_log && o->can_interface) {
         *exit_code = hs_options_wrong(&usage, "--bus", "and --can exclude each other");
+        return false;
+    }
+    if (o->tells_reports && o->node == 0) {
+        *exit_code =
+            hs_options_wrong(&usage, "--reports", "needs the unit's number on the bus, --node");
         return false;
     }
     if (o->start_s > 0 && !o->bus_log) {

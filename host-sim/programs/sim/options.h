@@ -9,13 +9,14 @@
 #include <stdint.h>
 
 struct options {
-    const char *database, *bus_log, *can_interface, *script, *png_folder;
+    const char *database, *bus_log, *can_interface, *bus_out, *script, *png_folder;
     double start_s; /* into the bus log */
     double seconds; /* 0: to the end of the bus log, or for ever */
     uint32_t every; /* of the pictures for --png; 0: only those the script asks for */
     uint32_t seed;  /* of the noise */
     uint16_t width_px, height_px;
     bool has_window, has_bezel, is_quiet;
+    bool tells_reports;                   /* on the bus, as its node */
     const struct lm_bus_profile *profile; /* of the bus */
     uint8_t node;                         /* on the bus; 0: it only listens */
     struct lm_glass_options glass;

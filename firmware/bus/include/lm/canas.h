@@ -22,10 +22,12 @@ enum {
     LM_CANAS_LONG = 3,
     LM_CANAS_ULONG = 4,
     LM_CANAS_BLONG = 5,
+    LM_CANAS_CHAR = 9,
     LM_CANAS_UCHAR = 10,
     LM_CANAS_SHORT2 = 12, /* value and full scale: value * scale / 32767 */
     LM_CANAS_CHAR4 = 15,
     LM_CANAS_UCHAR4 = 16,
+    LM_CANAS_UCHAR2 = 19,
     LM_CANAS_UCHAR3 = 27,
     LM_CANAS_DOUBLEH = 30,
     LM_CANAS_DOUBLEL = 31,

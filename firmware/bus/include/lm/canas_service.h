@@ -55,6 +55,9 @@ void lm_canas_service_init(struct lm_canas_service *s, uint8_t node, uint8_t har
  * the same one waits is answered together with it. */
 void lm_canas_service_take(struct lm_canas_service *s, const struct lm_can_frame *frame);
 
+/* Tell the state word unasked, as if STS had asked for it. */
+void lm_canas_service_tell_state(struct lm_canas_service *s, uint64_t now_us);
+
 /* Send at most one answer, to the request that waits longest. `state` is the word that STS asks
  * for. Call it in every step: with steps of 4 ms a request is answered within 4 ms while the bus
  * takes frames. Otherwise it is answered within LM_CANAS_ANSWER_US or not at all. */

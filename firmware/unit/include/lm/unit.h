@@ -20,6 +20,7 @@
  *     unit.c -+-> follow.c ---> commands.c -+
  *             +-> pacing.c -----------------+-> picture.c -> picture_sector.c, picture_patch.c
  *             +-> flags.c
+ *             +-> report.c
  *             +-> present.c
  *
  * lm/liveness.h says when a board may feed its watchdog, lm/fault_log.h which flags are faults. */
@@ -29,6 +30,7 @@
 #include <stddef.h>
 
 #include "lm/bus.h"
+#include "lm/canas_report.h"
 #include "lm/canas_service.h"
 #include "lm/controls.h"
 #include "lm/cursor.h"
@@ -48,6 +50,7 @@ struct lm_board {
     const struct lm_can *can;
     const struct lm_bus_profile *bus_profile; /* NULL: lm_bus_canas17 */
     uint8_t bus_node;          /* the unit's CANaerospace node, 1..255; 0: no node services */
+    bool tells_reports;        /* it also tells lm/canas_report.h; without a node it does not */
     uint8_t hardware_revision; /* told on the bus on request */
     const struct lm_controls *controls;
     const struct lm_display *display;
@@ -75,6 +78,7 @@ struct lm_unit {
     struct lm_bus bus;
     struct lm_nav nav;
     struct lm_canas_service service;
+    struct lm_canas_report report;
     uint64_t last_bus_us; /* arrival of the last frame that was no error report */
     struct {
         uint32_t jumps; /* nav.position_jumps as of the last step */
@@ -141,6 +145,7 @@ int lm_unit_init(struct lm_unit *u, const struct lm_board *board);
  * - move view and cursor, and the range scale if it follows the cursor;
  * - start and finish reads of tiles, without waiting;
  * - draw at most LM_STEP_LINES lines;
+ * - tell the other avionics what is due, at most LM_REPORT_FRAMES_A_STEP frames;
  * - draw and show the glass, every LM_FRAME_US.
  * Call at least every 4 ms for a smooth sweep. Never waits and never fails: errors show in u->flags
  * and u->count. Cost: docs/benchmarks.md. */

@@ -20,6 +20,9 @@ void bus_print_dbc(FILE *out, const struct lm_bus_profile *profile);
 /* The profile as a C source that defines lm_bus_generic (print_c.c). */
 void bus_print_c(FILE *out, const struct lm_bus_profile *profile);
 
+/* What the display tells unasked (lm/canas_report.h), as a table of Markdown. */
+void bus_print_reports(FILE *out);
+
 /* The names that a text table may say for a field, and their units. */
 void bus_print_fields(FILE *out);
 

@@ -1,0 +1,187 @@
+/* What the unit tells the other avionics, held against PROJ's geodesics, the hills of the tiny
+ * country, and the glass. */
+#include "check.h"
+#include "lm/canas_report.h"
+#include "unit_rig.h"
+#include "wgs84.h"
+
+#include <math.h>
+
+enum { NODE = 20, STALE = 1 };
+
+/* The frame of each item that came last, and the state word's. */
+struct listener {
+    struct lm_can_frame last[LM_REPORT_ITEMS], state;
+    uint32_t frames, states;
+    int (*receive)(void *ctx, struct lm_can_frame *frame);
+    void *ctx;
+};
+
+static int hear(void *ctx, struct lm_can_frame *frame)
+{
+    struct listener *l = ctx;
+    return l->receive(l->ctx, frame);
+}
+
+static int listen(void *ctx, const struct lm_can_frame *frame)
+{
+    struct listener *l = ctx;
+    for (uint32_t i = 0; i < LM_REPORT_ITEMS; i++) {
+        if (frame->id == lm_report_rows[i].id) {
+            l->last[i] = *frame;
+            l->frames++;
+        }
+    }
+    if (frame->id == 1500) {
+        l->state = *frame;
+        l->states++;
+    }
+    return LM_OK;
+}
+
+static struct rig *rig_that_tells(struct listener *l, uint8_t node)
+{
+    struct rig *r = make_rig();
+    *l = (struct listener){.receive = r->board.can.receive, .ctx = r->board.can.ctx};
+    r->board.can = (struct lm_can){.ctx = l, .receive = hear, .send = listen};
+    r->board.lent.bus_node = node;
+    r->board.lent.tells_reports = true;
+    assert_int_equal(lm_unit_init(&r->unit, &r->board.lent), LM_OK);
+    command(r, range_10);
+    return r;
+}
+
+static bool is_told(const struct listener *l, enum lm_report_item item)
+{
+    return l->last[item].length > 4;
+}
+
+static double told(const struct listener *l, enum lm_report_item item)
+{
+    const uint8_t *d = l->last[item].data + 4;
+    assert_true(l->last[item].length == 8 && l->last[item].data[1] == 3);
+    const uint32_t word = (uint32_t)d[0] << 24 | (uint32_t)d[1] << 16 | (uint32_t)d[2] << 8 | d[3];
+    return (double)(int32_t)word / lm_report_rows[item].per_unit;
+}
+
+/* The hills of the rig's country: 100 m + 50 m sin(east / 900 m). */
+static double hill_m(double latitude, double longitude)
+{
+    return 100 + 50 * sin(remainder(longitude - 11, 360) * 111412.84 *
+                          cos(latitude * 0.017453292519943) / 900);
+}
+
+/* Where the aircraft is, by the bus that the rig sends. */
+static void ownship_at(const struct rig *r, double *latitude, double *longitude)
+{
+    *latitude = 45.95 + 150 * (double)r->now_us / 1e6 / 111132.0;
+    *longitude = 11;
+}
+
+TEST(the_cursor_is_told_with_bearing_ranges_and_elevation)
+{
+    static struct listener l;
+    struct rig *r = rig_that_tells(&l, NODE);
+    run(r, 2);
+    command(r, (struct lm_control){.kind = LM_CONTROL_CURSOR,
+                                   .cursor = {FX_BAM_DEG(46), FX_BAM_DEG(221) / 20}});
+    run(r, 1);
+    assert_float_equal(told(&l, LM_REPORT_CURSOR_LATITUDE), 46, 2e-7);
+    assert_float_equal(told(&l, LM_REPORT_CURSOR_LONGITUDE), 11.05, 2e-7);
+    const struct geod_geodesic earth = wgs84();
+    double latitude, longitude, metres, bearing;
+    ownship_at(r, &latitude, &longitude);
+    geod_inverse(&earth, latitude, longitude, 46, 11.05, &metres, &bearing, NULL);
+    /* The aircraft flies 15 m between two sets, and FLOAT positions are coarse. */
+    assert_float_equal(told(&l, LM_REPORT_CURSOR_RANGE), metres, 25);
+    assert_float_equal(told(&l, LM_REPORT_CURSOR_BEARING), bearing, 0.3);
+    const double elevation = told(&l, LM_REPORT_CURSOR_ELEVATION);
+    assert_float_equal(elevation, hill_m(46, 11.05), 4);
+    assert_float_equal(told(&l, LM_REPORT_CURSOR_SLANT), hypot(metres, 2000 - elevation), 25);
+    assert_false(is_told(&l, LM_REPORT_PLACE_LATITUDE));
+    free_rig(r);
+}
+
+TEST(west_and_south_are_negative_and_far_places_have_no_range)
+{
+    static struct listener l;
+    struct rig *r = rig_that_tells(&l, NODE);
+    run(r, 2);
+    command(r, (struct lm_control){.kind = LM_CONTROL_CURSOR,
+                                   .cursor = {0u - FX_BAM_DEG(45), 0u - FX_BAM_DEG(170)}});
+    run(r, 1);
+    assert_float_equal(told(&l, LM_REPORT_CURSOR_LATITUDE), -45, 2e-7);
+    assert_float_equal(told(&l, LM_REPORT_CURSOR_LONGITUDE), -170, 2e-7);
+    assert_false(is_told(&l, LM_REPORT_CURSOR_RANGE) || is_told(&l, LM_REPORT_CURSOR_SLANT) ||
+                 is_told(&l, LM_REPORT_CURSOR_ELEVATION));
+    free_rig(r);
+}
+
+TEST(mode_settings_and_a_patch_are_told_as_the_glass_shows_them)
+{
+    static struct listener l;
+    struct rig *r = rig_that_tells(&l, NODE);
+    command(r, (struct lm_control){.kind = LM_CONTROL_GAIN, .gain_db = -6});
+    command(r, (struct lm_control){.kind = LM_CONTROL_AZIMUTH, .azimuth_index = 1});
+    run(r, 1.5);
+    const uint8_t sector[4] = {LM_PICTURE_SECTOR, r->unit.page.mode, r->unit.page.fov,
+                               r->unit.page.format};
+    assert_memory_equal(l.last[LM_REPORT_PICTURE].data + 4, sector, 4);
+    assert_true(told(&l, LM_REPORT_RANGE_SCALE) == 10);
+    assert_memory_equal(l.last[LM_REPORT_SETTINGS].data + 4, "\x1e\0", 2); /* A3: 30 degrees */
+    assert_int_equal((int8_t)l.last[LM_REPORT_GAIN].data[4], -6);
+    assert_memory_equal(l.last[LM_REPORT_PATCH].data + 4, "\0\0\0", 3);
+    assert_false(is_told(&l, LM_REPORT_PATCH_CELL));
+
+    command(r, patch_here);
+    run(r, 0.21);
+    assert_int_equal(l.last[LM_REPORT_PICTURE].data[4], LM_PICTURE_PATCH);
+    assert_true(told(&l, LM_REPORT_PATCH_CELL) == 5);
+    assert_in_range(l.last[LM_REPORT_PATCH].data[4], LM_REPORT_READING, LM_REPORT_DRAWING);
+    assert_in_range(l.last[LM_REPORT_PATCH].data[5], 0, 99);
+    run(r, 6);
+    assert_memory_equal(l.last[LM_REPORT_PATCH].data + 4, "\x03\x64\0", 3); /* drawn, 100 % */
+    assert_float_equal(told(&l, LM_REPORT_PLACE_LATITUDE), 46, 2e-7);
+    assert_float_equal(told(&l, LM_REPORT_PLACE_ELEVATION), hill_m(46, 11.05), 4);
+
+    command(r, (struct lm_control){.kind = LM_CONTROL_FREEZE, .is_frozen = true});
+    struct lm_control nonsense = patch_here;
+    nonsense.sar.cell_mm = 1;
+    command(r, nonsense);
+    run(r, 0.5);
+    assert_int_equal(l.last[LM_REPORT_SETTINGS].data[5], LM_REPORT_FROZEN);
+    assert_int_equal(l.last[LM_REPORT_PATCH].data[6], LM_REFUSED_CELL);
+    run(r, 2.5);
+    assert_int_equal(l.last[LM_REPORT_PATCH].data[6], LM_REFUSED_NOT);
+    free_rig(r);
+}
+
+TEST(old_navigation_is_told_as_old_and_lost_navigation_as_no_data)
+{
+    static struct listener l;
+    struct rig *r = rig_that_tells(&l, NODE);
+    run(r, 2);
+    assert_int_equal(l.last[LM_REPORT_CURSOR_LATITUDE].data[2], 0);
+    r->bus.stop_us = r->now_us;
+    run(r, 1);
+    assert_true(is_told(&l, LM_REPORT_CURSOR_LATITUDE));
+    assert_int_equal(l.last[LM_REPORT_CURSOR_LATITUDE].data[2], STALE);
+    run(r, 3);
+    assert_false(is_told(&l, LM_REPORT_CURSOR_LATITUDE));
+    assert_true(is_told(&l, LM_REPORT_PICTURE)); /* the display itself is well */
+    assert_true(l.state.data[7] & LM_FLAG_NAV_DEAD);
+    free_rig(r);
+}
+
+TEST(the_state_word_comes_twice_a_second_and_a_unit_without_a_number_is_silent)
+{
+    static struct listener l;
+    struct rig *r = rig_that_tells(&l, NODE);
+    run(r, 10);
+    assert_in_range(l.states, 19, 21);
+    free_rig(r);
+    r = rig_that_tells(&l, 0);
+    run(r, 2);
+    assert_int_equal(l.frames + l.states, 0);
+    free_rig(r);
+}
