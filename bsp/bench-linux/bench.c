@@ -39,8 +39,9 @@ static void report_refusal(struct bench *b, const struct lm_radar *radar, int st
 {
     struct lm_radar_fault fault;
     if (status == LM_ERR_TABLE && lm_radar_check(radar, &fault) != LM_OK) {
-        snprintf(b->error, sizeof b->error, "the radar table breaks its contract: %s, element %u",
-                 fault.field, (unsigned)fault.index);
+        snprintf(b->error, sizeof b->error,
+                 "the radar table breaks its contract: %s, element %u, must be %s", fault.field,
+                 (unsigned)fault.index, fault.needs ? fault.needs : "inside its range");
     } else {
         snprintf(b->error, sizeof b->error, "%s",
                  status == LM_ERR_RANGE
@@ -63,8 +64,7 @@ int bench_open(struct bench *b, const char *database, const struct bench_glass *
                                      .height_px = glass->height_px,
                                      .acquire = acquire,
                                      .present = present};
-    b->board = (struct lm_board){.radar = &lm_radar_default,
-                                 .flash = &b->flash.port,
+    b->board = (struct lm_board){.flash = &b->flash.port,
                                  .can = bus->can,
                                  .bus_profile = bus->profile,
                                  .bus_node = bus->node,

@@ -1,7 +1,7 @@
 #include "panel.h"
 
 #include "drv/not_fitted.h"
-#include "lm/radar_check.h"
+#include "lm/sensor.h"
 #include "report.h"
 
 #include <errno.h>
@@ -82,6 +82,12 @@ static void start_with_flash(struct panel *p, const struct lm_flash *flash)
         report(REPORT_ERROR,
                "%s: an image of another version; `landmass-db convert` renews old ones",
                p->config->database);
+    } else if (p->unit->map.open_status == LM_ERR_SENSOR) {
+        report(REPORT_ERROR,
+               "%s: its reflectivity is of band %s, the radar's is %s; build it for "
+               "this radar",
+               p->config->database, lm_sensor_word(p->unit->map.db.sensor),
+               lm_sensor_word(p->unit->map.radar->sensor));
     } else if (!p->unit->map.is_usable && flash != &drv_no_flash) {
         report(REPORT_ERROR, "%s: not a database for this firmware; landmass-db verify tells why",
                p->config->database);
@@ -91,8 +97,7 @@ static void start_with_flash(struct panel *p, const struct lm_flash *flash)
 static int start_unit(struct panel *p, const struct lm_flash *flash)
 {
     const size_t pixels = (size_t)p->glass.port.width_px * p->glass.port.height_px;
-    p->board = (struct lm_board){.radar = &lm_radar_default,
-                                 .flash = flash,
+    p->board = (struct lm_board){.flash = flash,
                                  .can = &p->bus.port,
                                  .bus_profile = p->config->can_profile,
                                  .bus_node = (uint8_t)p->config->can_node,
@@ -111,12 +116,6 @@ static int start_unit(struct panel *p, const struct lm_flash *flash)
     p->unit = calloc(1, sizeof *p->unit);
     if (p->board.tile_pool == NULL || p->board.plane == NULL || p->unit == NULL) {
         report(REPORT_ERROR, "start: out of memory");
-        return -1;
-    }
-    struct lm_radar_fault fault;
-    if (lm_radar_check(p->board.radar, &fault) != LM_OK) {
-        report(REPORT_ERROR, "start: the radar table breaks its contract: %s, element %u",
-               fault.field, (unsigned)fault.index);
         return -1;
     }
     start_with_flash(p, flash);

@@ -44,8 +44,7 @@ static int present(void *ctx)
 int main(void)
 {
     static const struct lm_display display = {NULL, WIDTH_PX, HEIGHT_PX, acquire, present};
-    const struct lm_board board = {.radar = &lm_radar_default,
-                                   .flash = &drv_no_flash,
+    const struct lm_board board = {.flash = &drv_no_flash,
                                    .can = &drv_no_can,
                                    .controls = &drv_no_controls,
                                    .display = &display,

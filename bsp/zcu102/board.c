@@ -109,8 +109,7 @@ void zcu102_open(struct zcu102 *z)
     open_console(z);
     open_devices(z);
     z->supervisor.watchdog = &z->watchdog;
-    z->lent = (struct lm_board){.radar = &lm_radar_default,
-                                .flash = &z->flash.port,
+    z->lent = (struct lm_board){.flash = &z->flash.port,
                                 .can = &z->can.port,
                                 .controls = &z->bezel.port,
                                 .display = &z->display.port,

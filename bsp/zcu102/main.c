@@ -11,6 +11,8 @@ static void report_refusal(struct zcu102 *z, int status)
     if (status == LM_ERR_TABLE && lm_radar_check(z->lent.radar, &fault) != LM_OK) {
         zcu102_print(&z->console, "the radar table breaks its contract\n");
         zcu102_print_value(&z->console, fault.field, fault.index);
+        zcu102_print(&z->console, fault.needs ? fault.needs : "outside its range");
+        zcu102_print(&z->console, "\n");
     } else {
         zcu102_print(&z->console, "the database's coarsest level does not fit the tile memory\n");
     }

@@ -157,15 +157,19 @@ static void draw_warning(const struct lm_glass *g, int32_t row, const char *word
     lm_draw_text(&pen, x, y, words);
 }
 
-void lm_overlay_warnings(const struct lm_glass *g, uint32_t flags, enum lm_refusal reason)
+void lm_overlay_warnings(const struct lm_glass *g, uint32_t flags,
+                         const struct lm_warning_reasons *reasons)
 {
-    const char *const why = lm_refusal_word(reason);
     int32_t row = 0;
     for (uint32_t i = 0; i < LM_FLAGS; i++) {
-        if (flags & 1u << i) {
+        const uint32_t flag = flags & 1u << i;
+        const char *const why = flag == LM_FLAG_DB       ? reasons->database
+                                : flag == LM_FLAG_UNABLE ? reasons->unable
+                                                         : "";
+        if (flag) {
             draw_warning(g, row++, flag_words[i]);
         }
-        if ((flags & 1u << i & LM_FLAG_UNABLE) && *why) {
+        if (*why) {
             draw_warning(g, row++, why);
         }
     }

@@ -4,6 +4,7 @@
 #include "fx/mem.h"
 #include "lm/const.h"
 #include "lm/image.h"
+#include "lm/sensor.h"
 
 #if __BYTE_ORDER__ != __ORDER_LITTLE_ENDIAN__
 #error "records are used in place: landmass needs a little-endian machine"
@@ -226,6 +227,16 @@ static int read_geoid(struct lm_db *db, const struct lm_image_header *h, uint32_
     return lm_geoid_is_sound(&db->geoid) ? LM_OK : LM_ERR_CORRUPT;
 }
 
+/* The radar table is optional. Who reads the record checks it. */
+static int find_radar(struct lm_db *db, const struct lm_image_header *h)
+{
+    const struct lm_image_section *s = section_of_type(h, LM_IMAGE_RADAR);
+    db->radar_offset = s ? s->offset : 0;
+    db->radar_bytes = s ? (uint32_t)s->bytes : 0;
+    return !s || (is_inside(h, s) && s->bytes > 0 && s->bytes <= UINT32_MAX) ? LM_OK
+                                                                             : LM_ERR_CORRUPT;
+}
+
 static int read_tables(struct lm_db *db, const struct lm_image_header *h, uint32_t poll_limit)
 {
     const uint64_t band_bytes = (uint64_t)db->band_count * sizeof(struct lm_band);
@@ -271,7 +282,7 @@ int lm_db_open(struct lm_db *db, const struct lm_flash *flash, uint32_t poll_lim
     if (fx_crc32c(0, &h, sizeof h - sizeof h.crc) != h.crc) {
         return LM_ERR_CORRUPT;
     }
-    if (h.top != LM_IMAGE_TOP_RESIDENT) {
+    if (h.top != LM_IMAGE_TOP_RESIDENT || h.sensor >= LM_SENSORS) {
         return LM_ERR_VERSION;
     }
     if (!header_is_sound(&h, flash->size_bytes)) {
@@ -287,6 +298,7 @@ int lm_db_open(struct lm_db *db, const struct lm_flash *flash, uint32_t poll_lim
     db->geoid_m_q6 = h.geoid_m_q6;
     db->centre_latitude = h.centre_latitude;
     db->centre_longitude = h.centre_longitude;
+    db->sensor = h.sensor;
     memcpy(db->title, h.title, sizeof h.title);
     db->title[sizeof h.title] = 0;
     int tables = read_tables(db, &h, poll_limit);
@@ -295,6 +307,9 @@ int lm_db_open(struct lm_db *db, const struct lm_flash *flash, uint32_t poll_lim
     }
     if (tables == LM_OK) {
         tables = find_tiles(db, &h);
+    }
+    if (tables == LM_OK) {
+        tables = find_radar(db, &h);
     }
     if (tables == LM_OK) {
         tables = read_targets_head(db, &h, poll_limit);

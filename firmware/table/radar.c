@@ -17,6 +17,8 @@ const struct lm_radar lm_radar_default = {
      * side; 120 degrees a second in GM, one sweep of A6 in one second: [FreeFalcon] and
      * [FlightGear] agree on scales and sectors; the rate is [FreeFalcon]'s, a base of 60 degrees a
      * second and twice that in GM. */
+    .name = "X",
+    .sensor = LM_SENSOR_X,
     .ranges = 4,
     /* Metres, nautical miles, end of sensitivity time control in metres; pulses in NORM, EXP, DBS1
      * and DBS2 in nanoseconds, and their code gains. UNSOURCED: time control that ends at three

@@ -31,6 +31,19 @@ static uint32_t bad_frames(const struct lm_bus *bus)
     return bad;
 }
 
+/* The name of the radar table in use, after where it comes from. */
+static void add_radar(const struct lm_unit_map *map, struct lm_text *t)
+{
+    static const char *const origins[] = {[LM_RADAR_BUILT_IN] = "RADAR",
+                                          [LM_RADAR_OF_IMAGE] = "IMG RDR",
+                                          [LM_RADAR_OF_BOARD] = "BRD RDR"};
+    lm_text_add(t, " ");
+    lm_text_tab(t, COLUMN_SECOND);
+    lm_text_add(t, origins[map->radar_origin]);
+    lm_text_tab(t, COLUMN_SECOND_NUMBER);
+    lm_text_add(t, map->radar->name);
+}
+
 static void add_counters(const struct lm_unit *u, uint32_t row, struct lm_text *t)
 {
     switch (row) {
@@ -76,6 +89,7 @@ static void add_counters(const struct lm_unit *u, uint32_t row, struct lm_text *
         break;
     default:
         add_counter(t, "DTL LOST", u->picture.sar.detail.left_out, COLUMN_NUMBER);
+        add_radar(&u->map, t);
     }
 }
 
@@ -85,10 +99,11 @@ static void add_database(const struct lm_unit *u, uint32_t row, struct lm_text *
         lm_text_add(t, "LANDMASS " LM_VERSION "  IMAGE V");
         lm_text_number(t, LM_DB_VERSION, 1);
     } else if (row == 1) {
+        const struct lm_text refusal = lm_unit_map_refusal(&u->map);
         lm_text_add(t, "DB ");
-        lm_text_add(t, u->map.is_usable                       ? u->map.db.title
-                       : u->map.open_status == LM_ERR_VERSION ? "OTHER VERSION"
-                                                              : "FAIL");
+        lm_text_add(t, u->map.is_usable ? u->map.db.title
+                       : refusal.length ? refusal.words
+                                        : "FAIL");
     } else {
         add_pair(t, "LEVELS", u->map.is_usable ? u->map.db.lod_count : 0, "RECORDS",
                  u->map.is_usable ? u->map.db.record_count : 0);

@@ -24,7 +24,7 @@ int32_t lm_elevation_at(struct lm_unit *u, struct lm_position position)
 /* Change the range scale as the cursor asks, if the range is automatic. */
 static void follow_range(struct lm_unit *u, uint64_t now_us)
 {
-    const uint32_t scale_m = u->board->radar->range[u->page.range_index].range_m;
+    const uint32_t scale_m = u->map.radar->range[u->page.range_index].range_m;
     if (!lm_picture_moves(&u->picture) || !u->page.is_auto_range || u->picture.is_view_held) {
         return;
     }

@@ -92,7 +92,9 @@ static void show_radar(const struct lm_unit *u, const struct lm_glass *glass)
     const struct lm_symbols symbols = describe(u);
     lm_overlay_picture(glass, &u->picture.plane);
     lm_overlay_symbols(glass, &symbols);
-    lm_overlay_warnings(glass, u->flags, u->unable.reason);
+    const struct lm_text database = lm_unit_map_refusal(&u->map);
+    const struct lm_warning_reasons reasons = {database.words, lm_refusal_word(u->unable.reason)};
+    lm_overlay_warnings(glass, u->flags, &reasons);
 }
 
 static void show_bit(const struct lm_unit *u, const struct lm_glass *glass)

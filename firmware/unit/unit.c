@@ -14,7 +14,7 @@ static void init_picture(struct lm_unit *u)
 {
     const struct lm_board *board = u->board;
     const struct lm_picture_lent lent = {
-        .radar = board->radar,
+        .radar = u->map.radar,
         .map = &u->map,
         .environment = &u->weather.now,
         .ownship = &u->ownship,
@@ -32,15 +32,20 @@ int lm_unit_init(struct lm_unit *u, const struct lm_board *board)
 {
     const struct lm_display *display = board->display;
     memset(u, 0, sizeof *u);
-    const int table_status = lm_radar_check(board->radar, NULL);
-    if (table_status != LM_OK) {
-        return table_status;
+    if (board->radar && lm_radar_check(board->radar, NULL) != LM_OK) {
+        return LM_ERR_TABLE;
     }
     if (display->width_px < 256 || display->width_px > 1024 || display->height_px < 256 ||
         display->height_px > 1024) {
         return LM_ERR_RANGE;
     }
     u->board = board;
+    const struct lm_unit_map_lent map = {board->flash, board->tile_pool, board->tile_pool_bytes,
+                                         board->flash_poll_limit, board->radar};
+    const int status = lm_unit_map_open(&u->map, &map);
+    if (status != LM_OK) {
+        return status;
+    }
     const struct lm_bus_profile *bus = board->bus_profile ? board->bus_profile : &lm_bus_canas17;
     lm_bus_init(&u->bus, bus);
     lm_nav_init(&u->nav);
@@ -48,14 +53,11 @@ int lm_unit_init(struct lm_unit *u, const struct lm_board *board)
     lm_canas_service_init(&u->service, node, board->hardware_revision, LM_VERSION_NUMBER);
     lm_canas_report_init(&u->report, board->tells_reports ? node : 0);
     lm_unit_weather_init(&u->weather);
-    lm_page_init(&u->page, board->radar);
+    lm_page_init(&u->page, u->map.radar);
     u->ground_m_q10 = LM_NO_ELEVATION;
     init_picture(u);
     lm_apply_effects(u, LM_EFFECT_SECTOR | LM_EFFECT_TONE | LM_EFFECT_PALETTE, 0);
-
-    const struct lm_unit_map_lent map = {board->flash, board->tile_pool, board->tile_pool_bytes,
-                                         board->flash_poll_limit};
-    return lm_unit_map_open(&u->map, &map);
+    return LM_OK;
 }
 
 static void take_frame(struct lm_unit *u, const struct lm_can_frame *frame)

@@ -2,6 +2,8 @@
 
 #include "fx/mem.h"
 #include "fx/sat.h"
+#include "lm/radar_record.h"
+#include "lm/sensor.h"
 
 enum { TILE_READS_A_STEP = 16 };
 
@@ -36,10 +38,38 @@ static void read_signatures(struct lm_unit_map *m, uint32_t poll_limit)
     lm_chips_init(&m->chips, &m->db, m->signatures);
 }
 
+/* Read the image's radar table. */
+static int read_radar(struct lm_unit_map *m, uint32_t poll_limit)
+{
+    uint8_t record[LM_RADAR_RECORD_BYTES];
+    const uint32_t bytes = fx_min_u32(m->db.radar_bytes, sizeof record);
+    int status = lm_db_read(m->db.flash, m->db.radar_offset, record, bytes, poll_limit);
+    if (status == LM_OK) {
+        status = lm_radar_unpack(&m->radar_of_image, record, bytes);
+    }
+    if (status == LM_OK) {
+        m->radar = &m->radar_of_image;
+        m->radar_origin = LM_RADAR_OF_IMAGE;
+    }
+    return status;
+}
+
+/* Open the tables, and see that the radar is the one for this ground. */
+static int open_tables(struct lm_unit_map *m, const struct lm_unit_map_lent *lent)
+{
+    m->radar = lent->radar ? lent->radar : &lm_radar_default;
+    m->radar_origin = lent->radar ? LM_RADAR_OF_BOARD : LM_RADAR_BUILT_IN;
+    int status = lm_db_open(&m->db, lent->flash, lent->flash_poll_limit);
+    if (status == LM_OK && !lent->radar && m->db.radar_bytes != 0) {
+        status = read_radar(m, lent->flash_poll_limit);
+    }
+    return status != LM_OK || m->db.sensor == m->radar->sensor ? status : LM_ERR_SENSOR;
+}
+
 int lm_unit_map_open(struct lm_unit_map *m, const struct lm_unit_map_lent *lent)
 {
     memset(m, 0, sizeof *m);
-    m->open_status = lm_db_open(&m->db, lent->flash, lent->flash_poll_limit);
+    m->open_status = open_tables(m, lent);
     m->is_usable = m->open_status == LM_OK;
     if (!m->is_usable) {
         return LM_OK;
@@ -48,6 +78,20 @@ int lm_unit_map_open(struct lm_unit_map *m, const struct lm_unit_map_lent *lent)
     read_signatures(m, lent->flash_poll_limit);
     return lm_tile_cache_init(&m->tiles, &m->db, lent->tile_pool, lent->tile_pool_bytes,
                               lent->flash_poll_limit);
+}
+
+struct lm_text lm_unit_map_refusal(const struct lm_unit_map *m)
+{
+    struct lm_text t = {0};
+    if (m->open_status == LM_ERR_VERSION) {
+        lm_text_add(&t, "OTHER VERSION");
+    } else if (m->open_status == LM_ERR_SENSOR) {
+        lm_text_add(&t, "IMAGE ");
+        lm_text_add(&t, lm_sensor_word(m->db.sensor));
+        lm_text_add(&t, "  RADAR ");
+        lm_text_add(&t, lm_sensor_word(m->radar->sensor));
+    }
+    return t;
 }
 
 void lm_unit_map_service(struct lm_unit_map *m, uint64_t now_us)

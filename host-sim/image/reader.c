@@ -7,6 +7,9 @@
 #include "hs/signature_file.h"
 #include "hs/zero_bytes.h"
 #include "image/grid.h"
+#include "lm/radar_check.h"
+#include "lm/radar_record.h"
+#include "lm/sensor.h"
 
 #include <errno.h>
 #include <fcntl.h>
@@ -113,6 +116,11 @@ static int check_header(const struct image *image, struct image_findings *f)
                    "its coarsest level is not to be resident whole (top %u): no program here can "
                    "read it",
                    h->top);
+        return -1;
+    }
+    if (h->sensor >= LM_SENSORS) {
+        image_find(f, offsetof(struct lm_image_header, sensor),
+                   "its reflectivity is of sensor %u, which no program here knows", h->sensor);
         return -1;
     }
     const bool is_sound =
@@ -262,6 +270,7 @@ static void fill_db(struct image *image)
         .geoid_m_q6 = h->geoid_m_q6,
         .centre_latitude = h->centre_latitude,
         .centre_longitude = h->centre_longitude,
+        .sensor = h->sensor,
     };
     memcpy(&image->db.classes, image->bytes + image->sections[LM_IMAGE_CLASSES]->offset,
            sizeof image->db.classes);
@@ -351,6 +360,32 @@ static int read_geoid(struct image *image, struct image_findings *f)
     return 0;
 }
 
+/* The radar table is needed by nothing else: what is wrong with it is noted, and the rest read. */
+static void read_radar(struct image *image, struct image_findings *f)
+{
+    const struct lm_image_section *s = image->sections[LM_IMAGE_RADAR];
+    struct lm_radar_fault fault;
+    if (!s) {
+        return;
+    }
+    const uint32_t bytes = s->bytes > UINT32_MAX ? UINT32_MAX : (uint32_t)s->bytes;
+    const int status = lm_radar_unpack(&image->radar, image->bytes + s->offset, bytes);
+    image->has_radar = status == LM_OK;
+    image->db.radar_offset = s->offset;
+    image->db.radar_bytes = bytes;
+    if (status == LM_ERR_TABLE && lm_radar_check(&image->radar, &fault) != LM_OK) {
+        image_find(f, s->offset, "section RADAR: %s, element %" PRIu32 ", must be %s", fault.field,
+                   fault.index, fault.needs ? fault.needs : "inside its range");
+    } else if (status != LM_OK) {
+        image_find(f, s->offset, "section RADAR: %s",
+                   status == LM_ERR_VERSION ? "a table of another version"
+                                            : "its length or its checksum does not fit it");
+    } else if (image->radar.sensor != image->header.sensor) {
+        image_find(f, s->offset, "section RADAR: a radar of band %s, for reflectivity of %s",
+                   lm_sensor_word(image->radar.sensor), lm_sensor_word(image->header.sensor));
+    }
+}
+
 int image_read_tables(struct image *image, struct image_findings *findings)
 {
     if (image->size_bytes < sizeof image->header) {
@@ -362,6 +397,7 @@ int image_read_tables(struct image *image, struct image_findings *findings)
         return -1;
     }
     fill_db(image);
+    read_radar(image, findings);
     if (read_geoid(image, findings) != 0) {
         return -1;
     }

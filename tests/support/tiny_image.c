@@ -11,7 +11,8 @@ enum {
     POST_SHIFT_MAX = 4,
     TILE_LOG2 = 6,
     TILE = 64,
-    SECTION_COUNT = 5,
+    SECTION_COUNT = 5, /* that every image has */
+    SECTION_COUNT_AT = 56,
     SECTION_ENTRY = 24,
     HEADER_BYTES = 1024,
     TITLE_AT = 832,
@@ -633,7 +634,7 @@ static void put_header(const struct builder *b, struct tiny_image *image, size_t
     put_u32(h + 44, (uint32_t)lround(b->spec->geoid_m * 64));
     put_u32(h + 48, (uint32_t)bam_from_deg(b->spec->latitude_deg));
     put_u32(h + 52, (uint32_t)bam_from_deg(b->spec->longitude_deg));
-    put_u32(h + 56, SECTION_COUNT);
+    put_u32(h + SECTION_COUNT_AT, SECTION_COUNT);
     const size_t sections[SECTION_COUNT][2] = {
         {image->classes_offset, sizeof(struct lm_classes)},
         {image->bands_offset, b->band_count * sizeof(struct lm_band)},
@@ -712,6 +713,29 @@ int tiny_image_build(struct tiny_image *image, const struct tiny_spec *spec)
     return status;
 }
 
+int tiny_image_add_section(struct tiny_image *image, uint32_t type, const void *bytes, size_t count)
+{
+    const size_t at = to_64(image->size);
+    uint8_t *whole = realloc(image->bytes, at + count);
+    uint32_t sections;
+    if (whole == NULL) {
+        return -1;
+    }
+    memset(whole + image->size, 0, at - image->size);
+    memcpy(whole + at, bytes, count);
+    memcpy(&sections, whole + SECTION_COUNT_AT, sizeof sections);
+    uint8_t *entry = whole + 64 + (size_t)sections * SECTION_ENTRY;
+    put_u32(entry, type);
+    put_u64(entry + 8, at);
+    put_u64(entry + 16, count);
+    put_u32(whole + SECTION_COUNT_AT, sections + 1);
+    put_u64(whole + 16, at + count);
+    image->bytes = whole;
+    image->size = at + count;
+    tiny_image_seal(image);
+    return 0;
+}
+
 void tiny_image_seal(struct tiny_image *image)
 {
     for (uint32_t i = 0; i < image->record_count; i++) {
@@ -725,7 +749,9 @@ void tiny_image_seal(struct tiny_image *image)
         memcpy(checked + 4, entry, ENTRY - 4);
         put_u32(entry + ENTRY - 4, fx_crc32c(0, checked, sizeof checked));
     }
-    for (uint32_t i = 0; i < SECTION_COUNT; i++) {
+    uint32_t sections;
+    memcpy(&sections, image->bytes + SECTION_COUNT_AT, sizeof sections);
+    for (uint32_t i = 0; i < sections; i++) {
         uint8_t *section = image->bytes + 64 + (size_t)i * SECTION_ENTRY;
         uint64_t offset, bytes;
         memcpy(&offset, section + 8, sizeof offset);

@@ -89,6 +89,10 @@ const struct lm_classes *tiny_classes(void);
  */
 int tiny_image_build(struct tiny_image *image, const struct tiny_spec *spec);
 
+/* Append an optional section and put the checksums right. Returns 0; -1 without memory. */
+int tiny_image_add_section(struct tiny_image *image, uint32_t type, const void *bytes,
+                           size_t count);
+
 /* Put right every checksum of the image (records, directory, sections, header) after a test has
  * changed its content. */
 void tiny_image_seal(struct tiny_image *image);

@@ -8,6 +8,7 @@
 #include "image/reader.h"
 #include "image/signatures.h"
 #include "image/targets.h"
+#include "lm/sensor.h"
 
 #include <inttypes.h>
 #include <math.h>
@@ -67,6 +68,9 @@ static void print_header(const struct image *image)
     printf("title           %.*s\n", LM_IMAGE_TITLE_BYTES, h->title);
     printf("version         %" PRIu32 "\n", h->version);
     printf("bytes           %" PRIu64 "\n", h->image_bytes);
+    printf("sensor          %s\n", lm_sensor_word(h->sensor));
+    printf("radar           %s\n",
+           image->has_radar ? image->radar.name : "none: the display's own");
     printf("centre          %.6f, %.6f\n", image_degrees((int32_t)h->centre_latitude),
            image_longitude_degrees(h->centre_longitude));
     printf("mean elevation  %.1f m above mean sea level\n", h->mean_elevation_m_q6 / 64.0);

@@ -11,6 +11,7 @@
 #include "hs/progress.h"
 #include "hs/report.h"
 #include "lm/bus_filters.h"
+#include "lm/sensor.h"
 #include "sim/bezel.h"
 #include "sim/hands.h"
 #include "sim/script.h"
@@ -321,6 +322,11 @@ static int run(struct sim *s)
     if (s->bench.unit->map.open_status == LM_ERR_VERSION) {
         hs_warn(o->database, "`landmass-db convert OLD NEW` makes a new image of an old one",
                 "is a flash image of another version");
+    } else if (s->bench.unit->map.open_status == LM_ERR_SENSOR) {
+        hs_warn(o->database, "build it for this radar",
+                "its reflectivity is of band %s, the radar's is %s",
+                lm_sensor_word(s->bench.unit->map.db.sensor),
+                lm_sensor_word(s->bench.unit->map.radar->sensor));
     } else if (!s->bench.unit->map.is_usable) {
         hs_warn(o->database, "landmass-db verify tells what is wrong", "is no usable flash image");
     }

@@ -13,7 +13,8 @@ enum lm_status {
     LM_ERR_VERSION = -3,   /* a format that this firmware does not know */
     LM_ERR_RANGE = -4,     /* a number outside the range that the header states */
     LM_ERR_NO_MEMORY = -5, /* the board lent too little memory */
-    LM_ERR_TABLE = -6      /* the radar table breaks its contract: lm_radar_check names the field */
+    LM_ERR_TABLE = -6,     /* the radar table breaks its contract: lm_radar_check names the field */
+    LM_ERR_SENSOR = -7     /* the image is of another band than the radar */
 };
 
 #endif

@@ -13,7 +13,6 @@
 #include "lm/glass_options.h"
 #include "lm/page.h"
 #include "lm/port.h"
-#include "lm/refusal.h"
 #include "lm/scan_conv.h"
 #include "lm/text.h"
 #include "lm/view.h"
@@ -107,9 +106,14 @@ void lm_overlay_symbols(const struct lm_glass *g, const struct lm_symbols *symbo
 /* Draw the labels of all keys, and the values between them. */
 void lm_overlay_labels(const struct lm_glass *g, const struct lm_page *page);
 
-/* Write the words of `flags` (enum lm_flag) below each other, from the top of the frame; below that
- * of LM_FLAG_UNABLE the word for its reason. */
-void lm_overlay_warnings(const struct lm_glass *g, uint32_t flags, enum lm_refusal reason);
+/* Reasons that are written below the word of their flag; "" for none. Borrowed. */
+struct lm_warning_reasons {
+    const char *database, *unable; /* of LM_FLAG_DB and LM_FLAG_UNABLE */
+};
+
+/* Write the words of `flags` (enum lm_flag) below each other, from the top of the frame. */
+void lm_overlay_warnings(const struct lm_glass *g, uint32_t flags,
+                         const struct lm_warning_reasons *reasons);
 
 /* Draw a hand that turns one eighth with every frame, in the lower right corner. A hand that stands
  * still shows that the display has stopped. */

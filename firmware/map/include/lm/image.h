@@ -27,7 +27,7 @@ enum lm_image_section_type {
     LM_IMAGE_SIGNATURES, /* optional, as all that follow */
     LM_IMAGE_GEOID,      /* grid of heights of mean sea level */
     LM_IMAGE_DETAIL,     /* vector detail of tiles */
-    LM_IMAGE_SENSOR,     /* radar table */
+    LM_IMAGE_RADAR,      /* radar table: lm/radar_record.h */
     LM_IMAGE_SEAL,       /* cryptographic signature */
     LM_IMAGE_SECTION_TYPES
 };
@@ -57,7 +57,8 @@ struct lm_image_header {
     uint32_t centre_latitude, centre_longitude;       /* BAM */
     uint32_t section_count;                           /* 0..LM_IMAGE_SECTIONS_MAX */
     uint8_t top;                                      /* LM_IMAGE_TOP_RESIDENT */
-    uint8_t reserved0[3];
+    uint8_t sensor;                                   /* enum lm_sensor: of the reflectivity */
+    uint8_t reserved0[2];
     struct lm_image_section sections[LM_IMAGE_SECTIONS_MAX];
     char title[LM_IMAGE_TITLE_BYTES]; /* zero-padded; may fill all 32 */
     uint8_t reserved1[156];

@@ -1,14 +1,16 @@
 /* Radar parameter table: every number that belongs to the radar and not to the display. An
- * integrator replaces the table (firmware/table/radar.c), not the code. Equations of all of it:
- * docs/EQUATIONS.md.
+ * integrator replaces the table, not the code: by a text file (landmass-radar), which the image or
+ * the board carries as a record (lm/radar_record.h). The built-in table is
+ * firmware/table/radar.c. Equations of all of it: docs/EQUATIONS.md.
  *
  * Each field has its unit and the range that the code bears. lm_radar_check (lm/radar_check.h)
  * holds a table to the ranges and to these rules between fields:
  *  - scales rise, in metres and in nautical miles, and rows behind the last one are empty;
  *  - every mode and every field of view has the smallest scale; the first mode has that of the
  *    start;
- *  - names are 1 to 5 printable characters without blanks, and no two modes or fields of view share
- *    one, whatever the case of their letters;
+ *  - names are letters, digits and + - . / : 1 to 5 of modes and fields of view, of which no two
+ *    share one, whatever the case of their letters; 1 to 7 of the radar, with blanks between
+ * words;
  *  - sectors are one line wide to each side or wider, and end within the antenna's limit;
  *  - samples lie 1/4 to 2/7 of the azimuth beam apart;
  *  - a gate's upper speed is 0 or not below its lower one;
@@ -28,9 +30,14 @@
 
 #include "fx/types.h"
 #include "lm/config.h"
+#include "lm/sensor.h"
 
-/* Scales that a table may have, sectors that it has, and characters of a name with its zero. */
+/* Scales that a table may have, sectors that it has, and characters of a name of a mode or field
+ * of view with its zero. */
 enum { LM_RANGES_MAX = 8, LM_AZIMUTHS = 3, LM_NAME_SIZE = 6 };
+
+/* Characters of the radar's own name with its zero. */
+enum { LM_RADAR_NAME_SIZE = 8 };
 
 /* Ends of ranges. The stages that a limit comes from assert that they bear it. */
 enum {
@@ -195,6 +202,8 @@ struct lm_sar_table {
 
 /* The table. */
 struct lm_radar {
+    char name[LM_RADAR_NAME_SIZE]; /* on the BIT page: "X" */
+    uint8_t sensor; /* enum lm_sensor, LM_SENSOR_X..LM_SENSOR_MMW: images of it alone are shown */
     uint8_t ranges; /* rows of `range` in use; 1..LM_RANGES_MAX */
     struct lm_range_row range[LM_RANGES_MAX];
     uint16_t range_start_nm;            /* the scale after power-up; 1..999 */

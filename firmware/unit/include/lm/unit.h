@@ -9,9 +9,9 @@
  *     static _Alignas(8) uint8_t tiles[384 * sizeof(struct lm_tile)];
  *     static uint8_t plane[768 * 768];
  *     const struct lm_board board = {
- *         .radar = &lm_radar_default, .flash = &flash, .can = &can, .controls = &controls,
- *         .display = &display, .tile_pool = tiles, .tile_pool_bytes = sizeof tiles,
- *         .plane = plane, .flash_poll_limit = 1000000};
+ *         .flash = &flash, .can = &can, .controls = &controls, .display = &display,
+ *         .tile_pool = tiles, .tile_pool_bytes = sizeof tiles, .plane = plane,
+ *         .flash_poll_limit = 1000000};
  *     if (lm_unit_init(&unit, &board) != LM_OK) { stop(); }
  *     for (;;) { lm_unit_step(&unit, clock_us()); sleep_ms(2); }
  *
@@ -45,7 +45,8 @@
 /* Board: the ports and memory that it lends. All pointers stay borrowed as long as the unit lives.
  * None may be NULL unless its remark says so. */
 struct lm_board {
-    const struct lm_radar *radar;
+    const struct lm_radar
+        *radar; /* NULL: the image's table, or the built-in one where it has none */
     const struct lm_flash *flash;
     const struct lm_can *can;
     const struct lm_bus_profile *bus_profile; /* NULL: lm_bus_canas17 */

@@ -1,17 +1,28 @@
 /* Unit map: the opened flash image: its tables, the pool of tiles, and the targets with their
- * signatures and chips. */
+ * signatures and chips; and the radar that looks at it. */
 #ifndef LM_UNIT_MAP_H
 #define LM_UNIT_MAP_H
 
 #include <stddef.h>
 
 #include "lm/chips.h"
+#include "lm/radar.h"
 #include "lm/target.h"
+#include "lm/text.h"
 #include "lm/tile_cache.h"
 
+/* Where the radar table comes from. The board's wins over the image's, and that over the one that
+ * is built in. */
+enum lm_radar_origin { LM_RADAR_BUILT_IN, LM_RADAR_OF_IMAGE, LM_RADAR_OF_BOARD };
+
 struct lm_unit_map {
-    int open_status; /* of lm_db_open: enum lm_status */
-    bool is_usable;  /* false: the image could not be opened; nothing below may be used */
+    const struct lm_radar *radar; /* the table in use, whatever the image is; never NULL */
+    enum lm_radar_origin radar_origin;
+    struct lm_radar radar_of_image; /* storage */
+
+    int open_status; /* enum lm_status: of lm_db_open, of lm_radar_unpack, or LM_ERR_SENSOR */
+    bool is_usable;  /* false: the image cannot be used, and nothing below save db.sensor where the
+                      * status is LM_ERR_SENSOR */
     struct lm_db db;
     struct lm_tile_cache tiles;
     struct lm_target targets[LM_TARGETS_MAX];
@@ -25,20 +36,29 @@ struct lm_unit_map {
     } count;
 };
 
-/* Flash and memory of an opened map. Both pointers stay borrowed as long as the map is used. */
+/* Flash, radar table and memory of an opened map. All pointers stay borrowed as long as the map is
+ * used. */
 struct lm_unit_map_lent {
     const struct lm_flash *flash;
     void *tile_pool; /* 8-byte aligned */
     size_t tile_pool_bytes;
-    uint32_t flash_poll_limit; /* polls after which a read by lm_unit_map_open is given up */
+    uint32_t flash_poll_limit;    /* polls after which a read by lm_unit_map_open is given up */
+    const struct lm_radar *radar; /* the board's table, which lm_radar_check has passed; NULL: the
+                                   * image's, or the one that is built in where it has none */
 };
 
-/* Open the image: read its tables, coarsest LOD, targets and signatures. Waits for the flash.
- * Returns
- * - LM_OK, and m->is_usable: true if the image can be used, false if it cannot;
+/* Open the image: choose the radar, read tables, coarsest LOD, targets and signatures. Waits for
+ * the flash. Returns
+ * - LM_OK, and m->is_usable: true if the image can be used. It cannot if lm_db_open fails, if its
+ *   radar table is the one to use and fails lm_radar_unpack, or if its reflectivity is of another
+ *   band than the radar in use (LM_ERR_SENSOR);
  * - LM_ERR_NO_MEMORY: the pool is too small for the coarsest LOD and 16 tiles; *m must not be
  *   used. */
 int lm_unit_map_open(struct lm_unit_map *m, const struct lm_unit_map_lent *lent);
+
+/* Why the image is refused although it is whole, in words: "IMAGE KU  RADAR X", "OTHER VERSION".
+ * Empty if it is not refused, or damaged. */
+struct lm_text lm_unit_map_refusal(const struct lm_unit_map *m);
 
 /* Finish and start reads of tiles and chips. Call in every step. Never waits. */
 void lm_unit_map_service(struct lm_unit_map *m, uint64_t now_us);

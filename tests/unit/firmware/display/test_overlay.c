@@ -10,6 +10,8 @@
 
 enum { SIDE_MAX = 1024, GUARD = 64, CANARY = 0x7EADBEEF };
 
+static const struct lm_warning_reasons reasons = {"IMAGE KU  RADAR X", "TOO NEAR"};
+
 /* A surface with a margin around it that nothing may touch. */
 static struct lm_surface make_surface(uint16_t width, uint16_t height)
 {
@@ -170,7 +172,7 @@ TEST(nothing_is_drawn_beyond_the_surface)
         const struct lm_frame frame = lm_frame_of_display(s.width_px, s.height_px);
         const struct lm_glass g = {s, &frame, &palette};
         lm_overlay_test_pattern(&g);
-        lm_overlay_warnings(&g, UINT32_MAX, LM_REFUSED_NEAR);
+        lm_overlay_warnings(&g, UINT32_MAX, &reasons);
         for (uint32_t row = 0; row < 60; row++) {
             lm_overlay_row(&g, row, "01234567890123456789012345678901234567890123456");
         }
@@ -252,7 +254,7 @@ TEST(each_flag_has_a_word_of_its_own_on_the_glass)
         const struct lm_frame frame = lm_frame_of_display(side, side);
         const struct lm_glass g = {s, &frame, &palette};
         lm_overlay_blank(&g);
-        lm_overlay_warnings(&g, (1u << LM_FLAGS) - 1, LM_REFUSED_DWELL);
+        lm_overlay_warnings(&g, (1u << LM_FLAGS) - 1, &reasons);
         for (uint32_t i = 0; i < LM_FLAGS; i++) {
             assert_true(glass_find(&s, lm_flag_word(i), palette.warning, palette.ink, NULL));
             for (uint32_t j = 0; j < i; j++) {

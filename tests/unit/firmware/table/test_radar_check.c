@@ -1,23 +1,25 @@
 /* The radar table's contract: a value past either end of any field is refused by its name, and so
  * is a table that breaks a rule between fields. */
 #include "check.h"
+#include "lm/radar_check.h"
 #include "lm/status.h"
-#include "radar_fields.h"
 
 #include <string.h>
 
-static void expect_refused(const struct lm_radar *radar, const char *field, uint32_t index)
+static void expect_refused(const struct lm_radar *radar, const char *field, uint32_t index,
+                           bool is_rule)
 {
-    struct lm_radar_fault fault = {NULL, UINT32_MAX};
+    struct lm_radar_fault fault = {NULL, UINT32_MAX, NULL};
     assert_int_equal(lm_radar_check(radar, &fault), LM_ERR_TABLE);
     assert_string_equal(fault.field, field);
     assert_int_equal(fault.index, index);
+    assert_int_equal(fault.needs != NULL, is_rule);
     assert_int_equal(lm_radar_check(radar, NULL), LM_ERR_TABLE);
 }
 
 TEST(the_default_table_keeps_its_contract)
 {
-    struct lm_radar_fault fault = {"untouched", 7};
+    struct lm_radar_fault fault = {"untouched", 7, NULL};
     assert_int_equal(lm_radar_check(&lm_radar_default, &fault), LM_OK);
     assert_string_equal(fault.field, "untouched");
 }
@@ -40,9 +42,9 @@ TEST(a_value_past_either_end_is_refused_by_its_field_s_name)
                 const int64_t past = end == 0 ? f->min - 1 : f->max + 1;
                 struct lm_radar radar = lm_radar_default;
                 if (can_hold(f, past)) {
-                    radar_field_set(&radar, f, i, past);
+                    lm_radar_field_set(&radar, f, i, past);
                     assert_int_equal(lm_radar_field_value(&radar, f, i), past);
-                    expect_refused(&radar, f->name, i);
+                    expect_refused(&radar, f->name, i, false);
                     tried++;
                 }
             }
@@ -56,6 +58,7 @@ TEST(a_value_past_either_end_is_refused_by_its_field_s_name)
 TEST(every_byte_of_the_table_belongs_to_a_field)
 {
     bool is_known[sizeof(struct lm_radar)] = {false};
+    memset(is_known + offsetof(struct lm_radar, name), true, LM_RADAR_NAME_SIZE);
     for (size_t i = 0; i < LM_SECTOR_MODES; i++) {
         memset(is_known + offsetof(struct lm_radar, mode) + i * sizeof(struct lm_sector_mode_row) +
                    offsetof(struct lm_sector_mode_row, name),
@@ -97,6 +100,36 @@ static void names_of_scales_fall(struct lm_radar *r)
 static void a_row_is_not_counted(struct lm_radar *r)
 {
     r->ranges--;
+}
+
+static void an_unused_row_holds_a_pulse(struct lm_radar *r)
+{
+    r->range[LM_RANGES_MAX - 1].pulse_ns[LM_FOV_DBS2] = 100;
+}
+
+static void the_radar_has_no_name(struct lm_radar *r)
+{
+    r->name[0] = 0;
+}
+
+static void the_radar_s_name_does_not_end(struct lm_radar *r)
+{
+    memset(r->name, 'X', LM_RADAR_NAME_SIZE);
+}
+
+static void the_radar_s_name_ends_in_a_blank(struct lm_radar *r)
+{
+    memcpy(r->name, "KU ", 4);
+}
+
+static void something_stands_behind_the_name(struct lm_radar *r)
+{
+    r->name[LM_RADAR_NAME_SIZE - 1] = 'X';
+}
+
+static void a_mode_s_name_begins_a_remark(struct lm_radar *r)
+{
+    memcpy(r->mode[LM_SECTOR_GM].name, "#GM", 4);
 }
 
 static void a_mode_lacks_the_smallest_scale(struct lm_radar *r)
@@ -216,6 +249,12 @@ TEST(a_broken_rule_between_fields_is_refused_by_name)
         {scales_fall, "range.range_m", 2},
         {names_of_scales_fall, "range.range_m", 3},
         {a_row_is_not_counted, "ranges", 0},
+        {an_unused_row_holds_a_pulse, "ranges", 0},
+        {the_radar_has_no_name, "name", 0},
+        {the_radar_s_name_does_not_end, "name", 0},
+        {the_radar_s_name_ends_in_a_blank, "name", 0},
+        {something_stands_behind_the_name, "name", 0},
+        {a_mode_s_name_begins_a_remark, "mode.name", LM_SECTOR_GM},
         {a_mode_lacks_the_smallest_scale, "mode.range_max_nm", LM_SECTOR_SEA},
         {a_field_lacks_the_smallest_scale, "fov.range_max_nm", LM_FOV_DBS2},
         {the_start_is_no_scale, "range_start_nm", 0},
@@ -241,6 +280,6 @@ TEST(a_broken_rule_between_fields_is_refused_by_name)
     for (size_t i = 0; i < sizeof rules / sizeof *rules; i++) {
         struct lm_radar radar = lm_radar_default;
         rules[i].breaks(&radar);
-        expect_refused(&radar, rules[i].field, rules[i].index);
+        expect_refused(&radar, rules[i].field, rules[i].index, true);
     }
 }

@@ -1,7 +1,8 @@
 /* A unit with tables at the ends of what the contract allows, under the address and undefined-
  * behaviour sanitizers: every field of view and a patch are drawn, and nothing overflows. */
 #include "check.h"
-#include "radar_fields.h"
+#include "lm/image.h"
+#include "lm/radar_check.h"
 #include "unit_rig.h"
 
 #include "hs/rng.h"
@@ -143,11 +144,13 @@ static void draw_patch(struct rig *r, uint32_t cell_mm)
 /* Fly with a table, low and high. */
 static void fly(const struct lm_radar *table, double height_m)
 {
-    struct lm_radar_fault fault = {"", 0};
+    struct lm_radar_fault fault = {"", 0, NULL};
     if (lm_radar_check(table, &fault) != LM_OK) {
         fail_msg("%s, element %u", fault.field, (unsigned)fault.index);
     }
     struct rig *r = make_rig();
+    r->image.bytes[offsetof(struct lm_image_header, sensor)] = table->sensor;
+    tiny_image_seal(&r->image);
     r->board.lent.radar = table;
     r->bus.height_m = height_m;
     assert_int_equal(lm_unit_init(&r->unit, &r->board.lent), LM_OK);
@@ -168,7 +171,7 @@ TEST(a_table_with_one_field_at_its_end_is_drawn)
         for (uint32_t end = 0; end < 2; end++) {
             struct lm_radar table = full_table();
             for (uint32_t i = 0; i < f->count; i++) {
-                radar_field_set(&table, f, i, end == 0 ? f->min : f->max);
+                lm_radar_field_set(&table, f, i, end == 0 ? f->min : f->max);
             }
             repair(&table);
             fly(&table, n % 2 ? 2000 : 12000);
@@ -188,7 +191,7 @@ TEST(tables_with_many_fields_at_their_ends_are_drawn)
             for (uint32_t i = 0; i < f->count; i++) {
                 const uint32_t pick = hs_rng_below(&rng, turn < 2 ? 1 : 4);
                 if (pick < 2) {
-                    radar_field_set(&table, f, i, (turn < 2 ? turn : pick) ? f->max : f->min);
+                    lm_radar_field_set(&table, f, i, (turn < 2 ? turn : pick) ? f->max : f->min);
                 }
             }
         }
