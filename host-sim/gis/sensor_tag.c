@@ -23,6 +23,7 @@ int db_sensor_tag_read(const char *path, enum hs_sensor *sensor)
                  name, DB_SENSOR_ITEM);
     }
     *sensor = found < 0 ? HS_SENSOR_X : (enum hs_sensor)found;
+    const int result = found < 0 ? -1 : name == NULL;
     db_raster_close(&r);
-    return found < 0 ? -1 : 0;
+    return result;
 }

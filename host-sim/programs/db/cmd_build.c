@@ -10,6 +10,7 @@
 #include "hs/error.h"
 #include "hs/options.h"
 #include "image/codes.h"
+#include "lm/sensor.h"
 
 #include <inttypes.h>
 #include <math.h>
@@ -241,19 +242,29 @@ static void fill_classes(struct lm_classes *to, const struct db_class_table *tab
     }
 }
 
+_Static_assert((int)HS_SENSOR_X == LM_SENSOR_X && (int)HS_SENSOR_KU == LM_SENSOR_KU &&
+                   (int)HS_SENSOR_KA == LM_SENSOR_KA && (int)HS_SENSOR_MMW == LM_SENSOR_MMW &&
+                   (int)HS_SENSOR_IR == LM_SENSOR_IR && (int)HS_SENSOR_COUNT == LM_SENSORS,
+               "the header's numbers are those of the host");
+
 /* The sensor of the reflectivity raster, the one that was asked for, or X. */
 static int choose_sensor(const struct settings *s, enum hs_sensor *sensor)
 {
     const enum hs_sensor asked = s->sensor < 0 ? HS_SENSOR_X : (enum hs_sensor)s->sensor;
     *sensor = asked;
-    if (s->reflectivity && db_sensor_tag_read(s->reflectivity, sensor) != 0) {
+    const int is_untagged = s->reflectivity ? db_sensor_tag_read(s->reflectivity, sensor) : 0;
+    if (is_untagged < 0) {
         return -1;
     }
-    return s->sensor < 0 || asked == *sensor
-               ? 0
-               : hs_error(s->reflectivity, "make it anew with `landmass-db reflect --sensor`",
-                          "is for %s, and --sensor asks for %s", hs_sensor_title(*sensor),
-                          hs_sensor_title(asked));
+    if (s->sensor >= 0 && asked != *sensor) {
+        return hs_error(s->reflectivity, "make it anew with `landmass-db reflect --sensor`",
+                        "is for %s, and --sensor asks for %s", hs_sensor_title(*sensor),
+                        hs_sensor_title(asked));
+    }
+    const bool is_assumed = s->sensor < 0 && (is_untagged || !s->reflectivity);
+    printf("sensor: %s%s\n", hs_sensor_title(*sensor),
+           is_assumed ? " (assumed; no tag " DB_SENSOR_ITEM " and no --sensor says another)" : "");
+    return 0;
 }
 
 static int read_table(struct build_context *b, const struct settings *s)
@@ -626,6 +637,7 @@ static void fill_header(struct lm_image_header *h, const struct build_context *b
         n->land_area_m2 > 0 ? n->land_metres_m2 / n->land_area_m2 : s->sea_level_m;
     h->mean_elevation_m_q6 = (int32_t)lround(mean_m * 64.0);
     h->geoid_m_q6 = geoid_q6(b, s, centre);
+    h->sensor = (uint8_t)b->sensor;
     h->centre_latitude = centre[0];
     h->centre_longitude = centre[1];
     if (s->title) {

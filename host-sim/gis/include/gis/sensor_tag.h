@@ -11,8 +11,8 @@
 /* Tag a raster that is being written. */
 void db_sensor_tag_write(struct db_raster_out *out, enum hs_sensor sensor);
 
-/* The sensor of the raster at `path`. Returns 0, or -1 with the error reported: the file cannot be
- * opened, or names a sensor that is not known here. */
+/* The sensor of the raster at `path`. Returns 0; 1 with HS_SENSOR_X if it has no tag; or -1 with
+ * the error reported: the file cannot be opened, or names a sensor that is not known here. */
 int db_sensor_tag_read(const char *path, enum hs_sensor *sensor);
 
 #endif

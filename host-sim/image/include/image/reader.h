@@ -4,6 +4,7 @@
 
 #include "image/format.h"
 #include "lm/db.h"
+#include "lm/radar.h"
 #include "lm/signature.h"
 #include "lm/target.h"
 
@@ -31,8 +32,8 @@ struct image {
     struct lm_db db; /* as the firmware holds it, without a flash */
     const struct lm_image_section
         *sections[LM_IMAGE_SECTION_TYPES]; /* in `header`; by type, [0] unused; NULL: not there */
-    bool has_radar;        /* a section RADAR, whose table is sound */
-    struct lm_radar radar; /* that table */
+    bool has_radar;                        /* a section RADAR, whose table is sound */
+    struct lm_radar radar;                 /* that table */
     const struct lm_tile_entry *entries;
     const struct lm_tile *tiles; /* the first; the builder puts them one after the other */
     /* db.target_count, signature_count and chip_count of them, their contents not yet checked */

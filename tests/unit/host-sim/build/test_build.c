@@ -743,7 +743,10 @@ TEST(an_image_has_the_levels_of_the_sensor_it_is_for)
     static const struct {
         const char *reflect, *build;
         double soil_db;
-    } cases[] = {{"ka", "", -17.3}, {"mmw", "--sensor mmw", -15.1}, {NULL, "--sensor ku", -19}};
+        enum lm_sensor sensor;
+    } cases[] = {{"ka", "", -17.3, LM_SENSOR_KA},
+                 {"mmw", "--sensor mmw", -15.1, LM_SENSOR_MMW},
+                 {NULL, "--sensor ku", -19, LM_SENSOR_KU}};
     write_cover(4326, (const double[6]){8.01, 0.0003, 0, 47.19, 0, -0.0003}, 100, 90);
     write_terrain("terrain.tif", 8.0, 47.0, 0.2, 0.25, 0.001, waves_m);
     for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
@@ -764,6 +767,7 @@ TEST(an_image_has_the_levels_of_the_sensor_it_is_for)
                          0);
         struct image image;
         open_sound_image(&image, "b.lmdb");
+        assert_int_equal(image.header.sensor, cases[i].sensor);
         assert_true(fabs(image.db.classes.entry[0].gamma_db_q8 / 256.0 - cases[i].soil_db) < 0.01);
         double sum = 0, count = 0;
         for (int k = 0; k < 128 * 128; k++) {

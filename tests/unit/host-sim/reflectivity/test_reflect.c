@@ -504,7 +504,7 @@ TEST(a_raster_without_a_sensor_is_for_x_and_an_unknown_sensor_is_refused)
 {
     enum hs_sensor sensor;
     write_scene();
-    assert_int_equal(db_sensor_tag_read(fixture_path("bright.tif"), &sensor), 0);
+    assert_int_equal(db_sensor_tag_read(fixture_path("bright.tif"), &sensor), 1);
     assert_int_equal(sensor, HS_SENSOR_X);
     GDALDatasetH d = GDALOpen(fixture_path("bright.tif"), GA_Update);
     GDALSetMetadataItem(d, DB_SENSOR_ITEM, "sonar", NULL);
