@@ -16,6 +16,7 @@ $(O)/bin/tests/fuzz/test_fuzz_$(1) $(O)/bin/fuzz/$(1): LDLIBS = $$(LINK_sanitize
 endef
 fuzz_target = $(eval $(call fuzz_rules,$(strip $(1)),$(strip $(2))))
 
+$(call fuzz_target, lz4,          lib firmware fixed)
 $(call fuzz_target, image,        lib firmware fixed)
 $(call fuzz_target, targets,      lib firmware fixed)
 $(call fuzz_target, chips,        lib firmware fixed)
