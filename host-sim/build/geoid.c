@@ -3,6 +3,7 @@
 #include "gis/gdal_start.h"
 #include "gis/length_unit.h"
 #include "hs/error.h"
+#include "hs/report.h"
 #include "resample/georef.h"
 
 #include <math.h>
@@ -182,6 +183,14 @@ static void say(const struct lm_geoid *g, const struct nodes *between, const cha
     }
     printf("geoid from %s: %u x %u nodes, %.1f to %.1f m, %.2f m off at most between them\n",
            source, g->rows, g->columns, low, high, off);
+    hs_report_object("geoid_grid");
+    hs_report_put("source", source);
+    hs_report_put("rows", g->rows);
+    hs_report_put("columns", g->columns);
+    hs_report_put("least_m", low);
+    hs_report_put("greatest_m", high);
+    hs_report_put("error_m", off);
+    hs_report_close();
 }
 
 int build_geoid_make(struct lm_geoid *g, const struct image_area *area, const char *source)

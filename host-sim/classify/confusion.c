@@ -1,5 +1,6 @@
 #include "classify/confusion.h"
 #include "hs/atomic_file.h"
+#include "hs/report.h"
 
 #include <math.h>
 
@@ -112,6 +113,40 @@ void db_confusion_print(FILE *out, const struct db_confusion *c, const struct db
     fprintf(out, "\noverall %.1f %%, mean of the classes %.1f %%, kappa %.3f, %llu pixels\n",
             100 * db_confusion_accuracy(c), 100 * db_confusion_mean_recall(c),
             db_confusion_kappa(c), (unsigned long long)db_confusion_total(c));
+}
+
+static void report_class(const struct db_confusion *c, const struct db_class_table *table, int t)
+{
+    hs_report_object(NULL);
+    hs_report_put("name", table->items[t].name);
+    hs_report_put("recall", db_confusion_recall(c, t));
+    hs_report_put("precision", db_confusion_precision(c, t));
+    hs_report_array("given");
+    for (int p = 0; p < table->count; p++) {
+        if (occurs(c, p)) {
+            hs_report_put(NULL, c->counts[t][p]);
+        }
+    }
+    hs_report_close();
+    hs_report_close();
+}
+
+void db_confusion_report(const char *key, const struct db_confusion *c,
+                         const struct db_class_table *table)
+{
+    hs_report_object(key);
+    hs_report_put("pixels", db_confusion_total(c));
+    hs_report_put("overall", db_confusion_accuracy(c));
+    hs_report_put("mean_recall", db_confusion_mean_recall(c));
+    hs_report_put("kappa", db_confusion_kappa(c));
+    hs_report_array("classes");
+    for (int t = 0; t < table->count; t++) {
+        if (occurs(c, t)) {
+            report_class(c, table, t);
+        }
+    }
+    hs_report_close();
+    hs_report_close();
 }
 
 int db_confusion_write(const char *path, const struct db_confusion *c,

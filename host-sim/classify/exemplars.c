@@ -4,6 +4,7 @@
 
 #include "hs/error.h"
 #include "hs/progress.h"
+#include "hs/report.h"
 #include "hs/rng.h"
 
 #include <stdlib.h>
@@ -101,18 +102,26 @@ static bool is_number(const char *label)
 /* A label that is nearly one of the map is likely to be meant for it. */
 static void report_left_out(const struct left_out *l, const struct db_label_map *map)
 {
+    hs_report_array("labels_left_out");
     for (int i = 0; i < l->count; i++) {
         const char *label = l->items[i].label;
         const char *nearest = l->items[i].is_ignored ? NULL : db_label_map_nearest(map, label);
         printf("label `%s`: %s, %llu pixels ignored\n", label,
                l->items[i].is_ignored ? "to be ignored" : "not mapped",
                (unsigned long long)l->items[i].count);
+        hs_report_object(NULL);
+        hs_report_put("label", label);
+        hs_report_flag("is_ignored", (bool)l->items[i].is_ignored);
+        hs_report_put("pixels", (uint64_t)l->items[i].count);
+        hs_report_close();
         if (nearest && !is_number(label)) {
             hs_warn(label, "correct its spelling, or say --ignore", "is not mapped, but `%s` is",
                     nearest);
         }
     }
+    hs_report_close();
     if (l->others > 0) {
+        hs_report_put("further_labels_pixels", (uint64_t)l->others);
         printf("further labels: not mapped, %llu pixels ignored\n", (unsigned long long)l->others);
     }
 }

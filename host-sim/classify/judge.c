@@ -1,6 +1,7 @@
 #include "classify/judge.h"
 
 #include "hs/error.h"
+#include "hs/report.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -48,6 +49,11 @@ static void report_outside(const struct db_judge *j, const char *image)
 {
     const double share = (double)j->outside / (double)j->pixels;
     const int band = worst_band(j);
+    if (j->net->has_range) {
+        hs_report_put("outside_share", share);
+        hs_report_put("outside_worst_band", band + 1);
+        hs_report_put("outside_worst_band_share", (double)j->by_band[band] / (double)j->pixels);
+    }
     if (!j->net->has_range) {
         printf(
             "range of the training: not in a network file of version 1; train again to have it\n");
@@ -79,6 +85,8 @@ void db_judge_report(const struct db_judge *j, const char *image,
     }
     report_outside(j, image);
     const double share = (double)counts[largest] / (double)j->pixels;
+    hs_report_put("largest_class", table->items[largest].name);
+    hs_report_put("largest_class_share", share);
     printf("largest class: %s, %.1f %%\n", table->items[largest].name, 100 * share);
     if (share >= DB_LARGEST_WARN) {
         hs_warn(image, "look at the picture (--picture) and check that the image fits the network",

@@ -3,6 +3,7 @@
 #include "classify/mlp_apply.h"
 #include "classify/split.h"
 #include "hs/error.h"
+#include "hs/report.h"
 
 #include <cblas.h>
 #include <math.h>
@@ -270,6 +271,7 @@ static int thin(struct task *t)
     }
     count_training(t->samples, after);
     if (t->options->thin_is_loud) {
+        hs_report_put("thinned", thinned);
         printf("nearly identical exemplars dropped: %ld\n", thinned);
     }
     for (int c = 0; c < t->table->count; c++) {

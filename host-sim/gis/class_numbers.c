@@ -2,6 +2,7 @@
 
 #include "gis/band_walk.h"
 #include "hs/error.h"
+#include "hs/report.h"
 
 #include <cpl_string.h>
 #include <inttypes.h>
@@ -134,13 +135,21 @@ static int say_assumption(const struct db_class_numbers *n, const struct census 
                           bool ignores_names)
 {
     const double km2 = pixel_km2(band);
+    hs_report_array("class_numbers_assumed");
     for (int i = 0; i < t->count; i++) {
         if (c->counts[i] > 0 && n->class_of[i] < DB_CLASS_UNKNOWN) {
             printf("class number %d is taken for %-16s %12" PRIu64 " pixels  %5.1f %%", i,
                    t->items[i].name, c->counts[i], share(c, c->counts[i]));
+            hs_report_object(NULL);
+            hs_report_put("class", i);
+            hs_report_put("name", t->items[i].name);
+            hs_report_put("pixels", c->counts[i]);
+            hs_report_put("area_km2", km2 > 0 ? (double)c->counts[i] * km2 : (double)NAN);
+            hs_report_close();
             printf(km2 > 0 ? "  %.3f km2\n" : "\n", (double)c->counts[i] * km2);
         }
     }
+    hs_report_close();
     return hs_warn(path, "compare the areas printed; `landmass-db segment` writes the names",
                    "%s: its numbers are taken for places in the class table",
                    ignores_names ? "is not asked for its class names" : "names no classes");

@@ -1,6 +1,7 @@
 #include "gis/class_raster.h"
 
 #include "hs/error.h"
+#include "hs/report.h"
 
 #include <cpl_string.h>
 #include <stdio.h>
@@ -84,10 +85,20 @@ void db_class_counts_print(const struct db_class_table *table, const uint64_t co
     for (int i = 0; i < table->count; i++) {
         total += counts[i];
     }
+    hs_report_array("classes");
     for (int i = 0; i < table->count; i++) {
+        const double share = (double)counts[i] / (double)total;
         printf("%-16s %12llu pixels  %5.1f %%\n", table->items[i].name,
-               (unsigned long long)counts[i], 100.0 * (double)counts[i] / (double)total);
+               (unsigned long long)counts[i], 100 * share);
+        hs_report_object(NULL);
+        hs_report_put("class", i);
+        hs_report_put("name", table->items[i].name);
+        hs_report_put("pixels", counts[i]);
+        hs_report_put("share", share);
+        hs_report_close();
     }
+    hs_report_close();
+    hs_report_put("pixels_without_data", counts[DB_CLASS_NODATA]);
     printf("%-16s %12llu pixels  %5.1f %%\n", "no data",
            (unsigned long long)counts[DB_CLASS_NODATA],
            100.0 * (double)counts[DB_CLASS_NODATA] / (double)total);

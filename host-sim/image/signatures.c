@@ -31,7 +31,7 @@ static void report_signature(const struct lm_signature *s, bool is_sound)
 {
     hs_report_object(NULL);
     hs_report_text_within("name", s->name, sizeof s->name);
-    hs_report_put("is_sound", is_sound);
+    hs_report_flag("is_sound", is_sound);
     if (is_sound) {
         hs_report_put("aspects", s->aspects);
         hs_report_put("pixel_m", s->pixel_mm / 1000.0);

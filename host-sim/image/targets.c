@@ -49,7 +49,7 @@ static void report_body(const struct lm_scatterer *s)
         hs_report_put("elevation_deg", image_degrees((int32_t)s->elevation));
         hs_report_put("roll_deg", image_degrees((int32_t)s->roll));
     }
-    hs_report_put("is_two_sided", s->is_two_sided != 0);
+    hs_report_flag("is_two_sided", s->is_two_sided != 0);
     hs_report_close();
 }
 
@@ -79,7 +79,7 @@ static void report_motion(const struct lm_target *t)
         hs_report_put("leg_m", t->leg_m);
         return;
     }
-    hs_report_put("path_is_round", t->path_is_round != 0);
+    hs_report_flag("path_is_round", t->path_is_round != 0);
     hs_report_array("path");
     for (int k = 0; lm_target_check(t) == LM_OK && k < t->path_legs; k++) {
         report_leg(&t->path[k]);
@@ -113,7 +113,7 @@ static void report_target(const struct lm_target *t)
     hs_report_put("latitude_deg", image_degrees((int32_t)t->latitude));
     hs_report_put("longitude_deg", image_longitude_degrees(t->longitude));
     hs_report_put("elevation_m", t->elevation_m_q6 / 64.0);
-    hs_report_put("is_above_ground", (t->flags & LM_TARGET_ABOVE_GROUND) != 0);
+    hs_report_flag("is_above_ground", (t->flags & LM_TARGET_ABOVE_GROUND) != 0);
     hs_report_put("heading_deg", image_degrees((int64_t)t->heading));
     report_echo(t);
     report_motion(t);

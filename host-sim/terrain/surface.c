@@ -3,6 +3,7 @@
 #include "gis/gdal_start.h"
 #include "gis/plausible.h"
 #include "hs/error.h"
+#include "hs/report.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -269,13 +270,19 @@ static int terrain_overlaps_judge(const struct source *sources, int count, bool 
 static void say_heights(const struct source *sources, int count)
 {
     const char *last = "";
+    hs_report_array("terrain_heights");
     for (int i = 0; i < count; i++) {
         const struct terrain_member *m = &sources[i].member;
         if (strcmp(m->vertical.said, last) != 0) {
             printf("terrain from %s: %s\n", m->path, m->vertical.said);
+            hs_report_object(NULL);
+            hs_report_put("path", m->path);
+            hs_report_put("heights", m->vertical.said);
+            hs_report_close();
         }
         last = m->vertical.said;
     }
+    hs_report_close();
 }
 
 int terrain_open(struct terrain *t, const struct hs_list *paths,

@@ -1,6 +1,7 @@
 #include "vectors/census.h"
 
 #include "hs/error.h"
+#include "hs/report.h"
 
 #include <inttypes.h>
 #include <stdbool.h>
@@ -19,6 +20,39 @@ static const char *const fate_names[VECTOR_FATES] = {"made",
                                                      "lost: parts not in the file",
                                                      "lost: ring is open",
                                                      "lost: nothing left of it"};
+
+/* Key of the report. */
+static const char *const fate_keys[VECTOR_FATES] = {
+    "made",          "without_tags",   "no_rule_fits",     "left_out",
+    "outside",       "in_a_relation",  "too_narrow",       "repeated",
+    "lost_dangling", "lost_open_ring", "lost_nothing_left"};
+
+static void report_kind(const struct vector_census *c, int kind)
+{
+    hs_report_object(kind_names[kind]);
+    hs_report_put("read", c->read[kind]);
+    for (int fate = 0; fate < VECTOR_FATES; fate++) {
+        hs_report_put(fate_keys[fate], c->fates[kind][fate]);
+    }
+    hs_report_close();
+}
+
+void vector_census_report(const struct vector_census *c, const char *name)
+{
+    hs_report_object(NULL);
+    hs_report_put("path", name);
+    for (int kind = 0; kind < VECTOR_KINDS; kind++) {
+        if (c->read[kind] > 0) {
+            report_kind(c, kind);
+        }
+    }
+    hs_report_put("shortened", c->shortened);
+    hs_report_put("holed", c->holed);
+    hs_report_put("repaired", c->repaired);
+    hs_report_put("missing_nodes", c->missing);
+    hs_report_put("out_of_order", c->late);
+    hs_report_close();
+}
 
 static void print_note(const char *name, uint64_t count, const char *what)
 {

@@ -4,6 +4,7 @@
 #include "gis/gdal_start.h"
 #include "hs/error.h"
 #include "hs/progress.h"
+#include "hs/report.h"
 #include "osm_reading.h"
 
 #include <cpl_conv.h>
@@ -488,18 +489,41 @@ static void print_heights(const struct vector_rule *rule, const struct vector_ru
     }
 }
 
+static void report_rule(const struct vector_rule *rule, const struct vector_rule_counts *n)
+{
+    hs_report_object(NULL);
+    hs_report_put("rule", rule->name);
+    hs_report_put("features", n->features);
+    hs_report_array("heights");
+    for (int i = 0; i < rule->height.count; i++) {
+        const struct vector_term *t = &rule->height.terms[i];
+        hs_report_object(NULL);
+        hs_report_put("tag", t->tag[0] ? (const char *)t->tag : NULL);
+        hs_report_put("features", n->heights[i]);
+        hs_report_close();
+    }
+    hs_report_close();
+    hs_report_put("drawn_as_parts", n->replaced);
+    hs_report_put("above_ground", n->above_ground);
+    hs_report_put("with_a_bad_number", n->odd);
+    hs_report_close();
+}
+
 void vector_map_print(const struct vector_map *map)
 {
+    hs_report_array("rules");
     for (int i = 0; i < map->rules->count; i++) {
         const struct vector_rule *rule = &map->rules->items[i];
         const struct vector_rule_counts *n = &map->counts[i];
         if (n->features == 0) {
             continue;
         }
+        report_rule(rule, n);
         printf("rule %-27s %10" PRIu64 "\n", rule->name, n->features);
         print_heights(rule, n);
         print_row("drawn as their parts", n->replaced);
         print_row("above the ground, made on it", n->above_ground);
         print_row("with a number that is none", n->odd);
     }
+    hs_report_close();
 }

@@ -9,6 +9,7 @@
 #include "gis/sensor_tag.h"
 #include "hs/error.h"
 #include "hs/options.h"
+#include "hs/report.h"
 #include "image/codes.h"
 #include "lm/sensor.h"
 
@@ -735,21 +736,48 @@ static int write_image(struct build_context *b, const struct settings *s, const 
     return 0;
 }
 
+static void report_level(int level, double cell_m, uint32_t tiles)
+{
+    hs_report_object(NULL);
+    hs_report_put("level", level);
+    hs_report_put("cell_m", cell_m);
+    hs_report_put("tiles", tiles);
+    hs_report_put("bytes", (uint64_t)tiles * LM_TILE_BYTES);
+    hs_report_close();
+}
+
 static void print_levels(const struct build_context *b, const struct report *r)
 {
+    hs_report_array("levels");
     for (int level = 0; level < b->plan.level_count; level++) {
         const double cell_m = ldexp(IMAGE_METRES_PER_BAM, b->plan.shift0 + level);
         printf("level %-2d cell %8.2f m  %7" PRIu32 " tiles  %12" PRIu64 " bytes\n", level, cell_m,
                r->levels.tiles[level], (uint64_t)r->levels.tiles[level] * LM_TILE_BYTES);
+        report_level(level, cell_m, r->levels.tiles[level]);
     }
+    hs_report_close();
+    hs_report_put("tiles", r->record_count);
+    hs_report_put("entries", r->entry_count);
+    hs_report_put("bytes", r->image_bytes);
     printf("image %" PRIu64 " tiles of %" PRIu64 " entries, %" PRIu64 " bytes\n", r->record_count,
            r->entry_count, r->image_bytes);
+}
+
+static void report_class(const char *name, uint64_t cells, double area_m2, uint64_t faced)
+{
+    hs_report_object(NULL);
+    hs_report_put("name", name);
+    hs_report_put("cells", cells);
+    hs_report_put("area_km2", area_m2 * 1e-6);
+    hs_report_put("cells_with_facing", faced);
+    hs_report_close();
 }
 
 static void print_classes(const struct build_context *b)
 {
     const struct build_counts *n = &b->counts;
     uint64_t cells = 0;
+    hs_report_array("classes");
     for (int k = 0; k < b->table.count; k++) {
         uint64_t of_class = n->cells[k];
         double area_m2 = n->area_m2[k];
@@ -764,8 +792,14 @@ static void print_classes(const struct build_context *b)
                    of_class ? 100.0 * (double)(of_class - n->cells[k]) / (double)of_class : 0);
         }
         printf("\n");
+        report_class(b->table.items[k].name, of_class, area_m2, of_class - n->cells[k]);
         cells += of_class;
     }
+    hs_report_close();
+    hs_report_put("facings", b->facing.facings);
+    hs_report_put("cells", cells);
+    hs_report_put("cells_by_elevation", n->cells_by_rule);
+    hs_report_put("cells_beyond_terrain", n->cells_beyond_terrain);
     printf("cells %" PRIu64 ", of them %" PRIu64 " classed from elevation, %" PRIu64
            " beyond the terrain\n",
            cells, n->cells_by_rule, n->cells_beyond_terrain);
@@ -780,6 +814,11 @@ static void print_voids(const struct terrain *t)
             pixels[v->regions[k].filling] += v->regions[k].pixels;
         }
     }
+    hs_report_object("voids");
+    hs_report_put("interpolated_posts", pixels[TERRAIN_INTERPOLATED]);
+    hs_report_put("sea_posts", pixels[TERRAIN_SEA]);
+    hs_report_put("left_void_posts", pixels[TERRAIN_LEFT_VOID]);
+    hs_report_close();
     printf("voids %" PRIu64 " posts interpolated, %" PRIu64 " taken as sea, %" PRIu64
            " left without data\n",
            pixels[TERRAIN_INTERPOLATED], pixels[TERRAIN_SEA], pixels[TERRAIN_LEFT_VOID]);
@@ -803,6 +842,9 @@ static void print_report(const struct build_context *b, const struct report *r, 
     }
     image_heights_text(b->classes.height_dm, heights, sizeof heights);
     printf("heights m%s; %" PRIu64 " samples cut to 1,000 m\n", heights, b->counts.heights_cut);
+    image_heights_report(b->classes.height_dm);
+    hs_report_put("heights_cut", b->counts.heights_cut);
+    hs_report_put("mean_land_elevation_m", r->mean_elevation_q6 / 64.0);
     printf("mean elevation of land %.1f m\n", r->mean_elevation_q6 / 64.0);
     printf("done in %.1f s\n", seconds);
 }
@@ -812,6 +854,11 @@ static void print_detail(const struct build_context *b, const char *path)
     const uint64_t outside = b->detail.count - b->counts.detail_items;
     printf("detail %" PRIu32 " items in %" PRIu32 " tiles\n", b->detail.count,
            b->detail.record_count);
+    hs_report_object("detail");
+    hs_report_put("items", b->detail.count);
+    hs_report_put("tiles", b->detail.record_count);
+    hs_report_put("outside", outside);
+    hs_report_close();
     if (outside > 0) {
         hs_warn(path, "give --class-raster or --terrain that reaches there",
                 "%" PRIu64 " items lie outside the map's finest level and are not shown", outside);
@@ -849,6 +896,8 @@ static int build(const struct settings *s)
     if (result == 0 && s->targets) {
         printf("targets %" PRIu32 ", signatures %" PRIu32 "\n", extras.targets.count,
                extras.targets.signatures.count);
+        hs_report_put("targets", extras.targets.count);
+        hs_report_put("signatures", extras.targets.signatures.count);
     }
     if (result == 0 && s->detail) {
         print_detail(b, s->detail);

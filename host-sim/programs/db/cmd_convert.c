@@ -2,6 +2,7 @@
 
 #include "hs/error.h"
 #include "hs/options.h"
+#include "hs/report.h"
 #include "image/reader.h"
 #include "image/verify.h"
 #include "image/version2.h"
@@ -57,6 +58,9 @@ static int check_new(const char *path)
     }
     const bool is_complete = image_verify(&image, &findings, &counts) == 0;
     if (is_complete && findings.count == 0) {
+        hs_report_put("bytes", image.size_bytes);
+        hs_report_put("tiles", counts.tiles);
+        hs_report_put("fault_count", findings.count);
         printf("%s: version 3, %" PRIu64 " bytes, %" PRIu64 " tiles, no faults\n", path,
                image.size_bytes, counts.tiles);
         print_missing(&image);

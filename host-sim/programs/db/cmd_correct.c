@@ -7,6 +7,7 @@
 #include "gis/label_map.h"
 #include "hs/error.h"
 #include "hs/progress.h"
+#include "hs/report.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -158,10 +159,22 @@ static int correct(struct work *w)
     return result;
 }
 
+static void report_change(const struct db_polygon *p, uint64_t changed, uint64_t covered)
+{
+    hs_report_object(NULL);
+    hs_report_put("id", p->id);
+    hs_report_put("label", p->label);
+    hs_report_put("changed_pixels", changed);
+    hs_report_put("covered_pixels", covered);
+    hs_report_close();
+}
+
 static void print_changes(const struct work *w)
 {
+    hs_report_array("corrections");
     for (size_t i = 0; i < w->polygons.count; i++) {
         const struct db_polygon *p = &w->polygons.items[i];
+        report_change(p, w->changed[i], w->covered[i]);
         char place[96];
         snprintf(place, sizeof place, "correction %ld (%s)", p->id, p->label);
         printf("%s: %llu of %llu pixels changed\n", place, (unsigned long long)w->changed[i],
@@ -170,6 +183,7 @@ static void print_changes(const struct work *w)
             hs_warn(place, "check its CRS", "covers no pixel of the class raster");
         }
     }
+    hs_report_close();
 }
 
 static int run(struct work *w)

@@ -8,6 +8,7 @@
 #include "hs/options.h"
 #include "hs/output_path.h"
 #include "hs/progress.h"
+#include "hs/report.h"
 #include "image/picture.h"
 
 #include <math.h>
@@ -240,6 +241,12 @@ static int run(struct work *w)
     }
     printf("%d x %d pixels of level %d (cell %.2f m), %d classes\n", w->view.width, w->view.height,
            w->view.level, w->view.pixel_m, w->table.count);
+    hs_report_put("width_px", w->view.width);
+    hs_report_put("height_px", w->view.height);
+    hs_report_put("level", w->view.level);
+    hs_report_put("cell_m", w->view.pixel_m);
+    hs_report_put("classes", w->table.count);
+    hs_report_put("damaged_tiles", w->view.damaged_tiles);
     if (w->view.damaged_tiles > 0) {
         hs_warn(w->settings->out, "`landmass-db verify` says more",
                 "damaged tiles were left out of every plane");

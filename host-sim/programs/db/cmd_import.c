@@ -6,6 +6,7 @@
 #include "gis/class_raster.h"
 #include "hs/error.h"
 #include "hs/input_file.h"
+#include "hs/report.h"
 
 #include <cpl_string.h>
 #include <math.h>
@@ -261,7 +262,12 @@ static void print_report(const struct import *im)
     }
     printf("%d x %d cells, %.1f %% of them seen, %u patches\n", c->width, c->height,
            100.0 * (double)seen / (double)cells, im->patches.count);
+    hs_report_put("width_px", c->width);
+    hs_report_put("height_px", c->height);
+    hs_report_put("seen_pixels", seen);
+    hs_report_put("patches", im->patches.count);
     if (im->heights) {
+        hs_report_put("pixels_above_ground", high);
         printf("heights: %llu cells stand above the ground\n", (unsigned long long)high);
     }
     if (im->options->class_raster) {

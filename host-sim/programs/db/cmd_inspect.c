@@ -173,7 +173,7 @@ static void report_class(int number, const struct lm_class *c, const char *kind)
     hs_report_put("spread_db", c->spread_db_q8 / 256.0);
     hs_report_put("height_m", c->height_dm / 10.0);
     hs_report_put("looks", c->looks);
-    hs_report_put("colour", (const char *)colour);
+    hs_report_put("colour", colour);
     hs_report_close();
 }
 

@@ -4,6 +4,7 @@
 #include "hs/error.h"
 #include "hs/options.h"
 #include "hs/png.h"
+#include "hs/report.h"
 #include "image/picture.h"
 
 #include <math.h>
@@ -109,6 +110,27 @@ static void print_legend(const struct image *image, const struct image_view *v)
     }
 }
 
+static void report_picture(const struct image *image, const struct image_view *v)
+{
+    hs_report_put("plane", image_plane_names[v->plane]);
+    hs_report_put("width_px", v->width);
+    hs_report_put("height_px", v->height);
+    hs_report_put("pixel_m", v->pixel_m);
+    hs_report_put("level", v->level);
+    hs_report_put("cell_m", ldexp(IMAGE_METRES_PER_BAM, image->header.shift0 + v->level));
+    hs_report_object("area");
+    hs_report_put("south_deg", image_degrees(v->area.south));
+    hs_report_put("west_deg", image_longitude_degrees(v->area.west));
+    hs_report_put("north_deg", image_degrees(v->area.north));
+    hs_report_put("east_deg", image_longitude_degrees(v->area.west + (uint32_t)v->area.width));
+    hs_report_close();
+    if (v->plane != IMAGE_PLANE_CLASS && v->plane != IMAGE_PLANE_SHADE) {
+        hs_report_put("black", v->black);
+        hs_report_put("white", v->white);
+    }
+    hs_report_put("damaged_tiles", v->damaged_tiles);
+}
+
 static int run(const char *path, const struct settings *s)
 {
     struct image_view view = {.black = s->black, .white = s->white};
@@ -124,6 +146,7 @@ static int run(const char *path, const struct settings *s)
     const int result = draw(&image, s, &view);
     if (result == 0) {
         print_legend(&image, &view);
+        report_picture(&image, &view);
     }
     if (view.damaged_tiles > 0) {
         hs_warn(path, "`landmass-db verify` says more", "%u damaged tiles were left out",

@@ -10,6 +10,7 @@
 #include "hs/error.h"
 #include "hs/png.h"
 #include "hs/progress.h"
+#include "hs/report.h"
 #include "reflectivity/reflect.h"
 
 #include <math.h>
@@ -437,34 +438,72 @@ static int for_all_blocks(struct work *w, const char *label, int (*work_on)(stru
     return result;
 }
 
+static double class_mean_db(const struct outcome *o, int c)
+{
+    return o->sum[c] / o->count[c];
+}
+
+static double class_spread_db(const struct outcome *o, int c)
+{
+    const double mean = class_mean_db(o, c);
+    return sqrt(fmax(0, o->square[c] / o->count[c] - mean * mean));
+}
+
+static void report_class(const struct work *w, int c)
+{
+    const struct outcome *o = &w->outcome;
+    hs_report_object(NULL);
+    hs_report_put("name", w->table.items[c].name);
+    hs_report_put("pixels", o->count[c]);
+    hs_report_put("mean_db", class_mean_db(o, c));
+    hs_report_put("spread_db", class_spread_db(o, c));
+    hs_report_put("least_db", o->low[c]);
+    hs_report_put("greatest_db", o->high[c]);
+    hs_report_put("table_mean_db", w->table.items[c].gamma_db);
+    hs_report_put("table_spread_db", w->table.items[c].spread_db);
+    hs_report_close();
+}
+
 static void print_outcome(const struct work *w)
 {
     const struct outcome *o = &w->outcome;
+    hs_report_array("classes");
     for (int i = 0; i < w->table.count; i++) {
         if (o->count[i] > 0) {
-            const double mean = o->sum[i] / o->count[i];
+            const double mean = class_mean_db(o, i);
             printf(
                 "%-16s %12.0f pixels  mean %7.2f dB (table %g)  spread %5.2f dB (%g)  %7.2f .. "
                 "%.2f "
                 "dB\n",
                 w->table.items[i].name, o->count[i], mean, w->table.items[i].gamma_db,
-                sqrt(fmax(0, o->square[i] / o->count[i] - mean * mean)),
-                w->table.items[i].spread_db, o->low[i], o->high[i]);
+                class_spread_db(o, i), w->table.items[i].spread_db, o->low[i], o->high[i]);
+            report_class(w, i);
         }
     }
+    hs_report_close();
 }
 
 static void print_radar(const struct work *w)
 {
     printf("radar: %.2f of its pixels along a pixel of the class raster, mean power of %ld x %ld\n",
            w->radar.pixels_per_cell, w->options->radar.multilook, w->options->radar.multilook);
+    hs_report_put("radar_pixels_per_pixel", w->radar.pixels_per_cell);
+    hs_report_put("pixels_without_radar", w->filled);
+    hs_report_array("radar_classes");
     for (int c = 0; c < w->table.count; c++) {
         if (w->brightness.count[c] > 0) {
             printf("%-16s %12.0f pixels of radar  mean %7.2f dB  offset %+.2f dB%s\n",
                    w->table.items[c].name, w->brightness.count[c], class_mean(w, c),
                    offset_of(w, c), w->table.items[c].kind == DB_KIND_WATER ? ", uniform" : "");
+            hs_report_object(NULL);
+            hs_report_put("name", w->table.items[c].name);
+            hs_report_put("pixels", w->brightness.count[c]);
+            hs_report_put("mean_db", class_mean(w, c));
+            hs_report_put("offset_db", offset_of(w, c));
+            hs_report_close();
         }
     }
+    hs_report_close();
     if (w->options->calibrate != NOT_AT_ALL) {
         printf("assumed: %s differs from this imagery by one number of dB in %s\n",
                hs_sensor_title((enum hs_sensor)w->options->sensor),
@@ -487,6 +526,8 @@ static void print_patches(const struct work *w)
         }
         count += pixels > 0;
     }
+    hs_report_put("patches", count);
+    hs_report_put("pixels_by_whole_image", w->alone);
     printf(
         "patches: %d; %llu pixels have less than %d of their class in theirs and go by the whole "
         "image\n",

@@ -12,6 +12,7 @@
 #include "hs/error.h"
 #include "hs/png.h"
 #include "hs/progress.h"
+#include "hs/report.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -353,6 +354,7 @@ static int write_report(const struct work *w)
     }
     printf("\nExemplars in the segmented image (trained on or not):\n");
     db_confusion_print(stdout, &confusion, &w->table);
+    db_confusion_report("exemplars", &confusion, &w->table);
     if (db_report_path(path, sizeof path, w->options->report, "confusion.csv") != 0 ||
         db_confusion_write(path, &confusion, &w->table) != 0) {
         return -1;
@@ -375,6 +377,12 @@ static void print_counts(struct work *w)
                (unsigned long long)w->rejected, (unsigned long long)w->judge.pixels,
                w->options->reject, (unsigned long long)w->judge.outside,
                (unsigned long long)w->judge.unsure);
+        hs_report_object("rejected");
+        hs_report_put("pixels", w->rejected);
+        hs_report_put("outside", w->judge.outside);
+        hs_report_put("unsure", w->judge.unsure);
+        hs_report_put("became", w->options->reject);
+        hs_report_close();
     }
 }
 
@@ -385,6 +393,9 @@ static int run(struct work *w)
         return HS_EXIT_FAILED;
     }
     print_counts(w);
+    hs_report_put("width_px", w->image.grid.width);
+    hs_report_put("height_px", w->image.grid.height);
+    hs_report_put("network_s", w->seconds);
     const double megapixels = 1e-6 * (double)w->image.grid.width * (double)w->image.grid.height;
     printf("network: %.2f Mpixel in %.3f s on one core, %.1f Mpixel/s\n", megapixels, w->seconds,
            megapixels / w->seconds);

@@ -8,6 +8,7 @@
 #include "classify/split.h"
 #include "hs/atomic_file.h"
 #include "hs/error.h"
+#include "hs/report.h"
 #include "hs/text_file.h"
 
 #include <math.h>
@@ -264,6 +265,7 @@ static int gather(struct work *w)
         printf("exemplar pixels without data: %llu left out\n",
                (unsigned long long)w->samples.without_data);
     }
+    hs_report_put("exemplars_without_data", (uint64_t)w->samples.without_data);
     if (!w->choices.holds_out) {
         return 0;
     }
@@ -271,13 +273,25 @@ static int gather(struct work *w)
                     w->choices.held_out, (uint64_t)o->seed, DB_PART_HELD_OUT, false);
 }
 
+static void report_exemplars(const struct work *w, int c, const size_t parts[3])
+{
+    hs_report_object(NULL);
+    hs_report_put("name", w->table.items[c].name);
+    hs_report_put("pixels", (uint64_t)w->exemplars.available[c]);
+    hs_report_put("to_train_on", parts[DB_PART_TRAIN]);
+    hs_report_put("held_out", parts[DB_PART_HELD_OUT]);
+    hs_report_close();
+}
+
 static void print_counts(const struct work *w)
 {
+    hs_report_array("exemplars");
     for (int c = 0; c < w->table.count; c++) {
         size_t parts[3] = {0};
         for (size_t i = 0; i < w->samples.count; i++) {
             parts[w->samples.items[i].part] += w->samples.items[i].class_index == c;
         }
+        report_exemplars(w, c, parts);
         if (w->exemplars.available[c] > 0) {
             printf("%-16s %10llu pixels, %8zu to train on, %8zu held out\n", w->table.items[c].name,
                    (unsigned long long)w->exemplars.available[c], parts[DB_PART_TRAIN],
@@ -287,6 +301,7 @@ static void print_counts(const struct work *w)
                     "has no exemplar, so no pixel will be given this class");
         }
     }
+    hs_report_close();
 }
 
 static int write_split(const struct work *w)
@@ -381,6 +396,32 @@ static int learn(struct work *w)
                     (int)o->context, &options, w->reports);
 }
 
+static void report_network(const struct db_mlp *mlp)
+{
+    hs_report_object("network");
+    hs_report_put("inputs", mlp->input_count);
+    hs_report_array("hidden");
+    for (int l = 0; l < mlp->layer_count; l++) {
+        hs_report_put(NULL, mlp->hidden[l]);
+    }
+    hs_report_close();
+    hs_report_put("outputs", mlp->output_count);
+    hs_report_close();
+}
+
+static void report_member(const struct db_train_report *r, const char *stop)
+{
+    const struct db_epoch *best = &r->epochs[r->best_epoch - 1];
+    hs_report_object(NULL);
+    hs_report_put("epochs", r->epoch_count);
+    hs_report_put("stop", stop);
+    hs_report_put("kept_epoch", r->best_epoch);
+    hs_report_put("rms_error", best->rms);
+    hs_report_put("recognition", best->recognition);
+    hs_report_put("validation", best->validation);
+    hs_report_close();
+}
+
 static void print_training(const struct work *w)
 {
     static const char *const stops[] = {"the goal is reached", "all epochs are spent",
@@ -399,8 +440,11 @@ static void print_training(const struct work *w)
             "measured (--hidden).\n",
             wanted, taken);
     }
+    report_network(mlp);
+    hs_report_array("members");
     for (int m = 0; m < w->net.member_count; m++) {
         const struct db_train_report *r = &w->reports[m];
+        report_member(r, stops[r->stop]);
         const struct db_epoch *best = &r->epochs[r->best_epoch - 1];
         for (int i = 0; i < r->event_count; i++) {
             printf("epoch %d: %s\n", r->events[i].epoch, r->events[i].text);
@@ -412,12 +456,15 @@ static void print_training(const struct work *w)
         }
         putchar('\n');
     }
+    hs_report_close();
 }
 
 /* Say plainly when the bands do not separate the classes. */
 static void print_verdict(const struct work *w, const struct db_confusion *trained)
 {
     const double recognition = db_confusion_mean_recall(trained);
+    hs_report_put("goal", w->options->goal);
+    hs_report_flag("goal_is_reached", recognition >= w->options->goal);
     if (recognition >= w->options->goal) {
         return;
     }
@@ -502,12 +549,14 @@ static int evaluate(const struct work *w)
         db_confusion_count(&held_out, &w->samples, given, DB_PART_HELD_OUT);
         printf("\nExemplars trained on:\n");
         db_confusion_print(stdout, &trained, &w->table);
+        db_confusion_report("trained_on", &trained, &w->table);
         if (w->choices.holds_out) {
             printf("\nExemplars held out (%s):\n",
                    w->choices.by_regions ? "whole polygons"
                                          : "pixels at random: flattering, their neighbours were "
                                            "trained on");
             db_confusion_print(stdout, &held_out, &w->table);
+            db_confusion_report("held_out", &held_out, &w->table);
         }
         print_verdict(w, &trained);
         result = write_report(w, given, &trained, &held_out);

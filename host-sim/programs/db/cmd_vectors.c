@@ -3,6 +3,7 @@
 #include "gis/class_raster.h"
 #include "hs/error.h"
 #include "hs/options.h"
+#include "hs/report.h"
 #include "vectors/output.h"
 #include "vectors/source.h"
 
@@ -151,17 +152,20 @@ static int open_sources(struct job *j, const struct settings *s)
 
 static int add_sources(struct job *j)
 {
+    hs_report_array("sources");
     for (int i = 0; i < j->source_count; i++) {
         struct vector_source *source = &j->sources[i];
         if (vector_source_add(source, &j->map) != 0) {
             return -1;
         }
         vector_census_print(&source->census, source->path);
+        vector_census_report(&source->census, source->path);
         if (vector_census_check(&source->census, source->path) != 0) {
             return -1;
         }
         vector_census_warn(&source->census, source->path);
     }
+    hs_report_close();
     return j->map.item_count > 0
                ? 0
                : hs_error("--vectors", "check --area, and the rules' tags with ogrinfo",
@@ -207,6 +211,20 @@ static int write_rasters(const struct job *j, const struct settings *s)
     return -1;
 }
 
+static void report_detail(const struct vector_detail_counts *n)
+{
+    hs_report_object("detail");
+    hs_report_put("buildings", n->buildings);
+    hs_report_put("boxes", n->boxes);
+    hs_report_put("boxes_m2", n->boxes_m2);
+    hs_report_put("footprint_m2", n->footprint_m2);
+    hs_report_put("walls", n->walls);
+    hs_report_put("lines", n->lines);
+    hs_report_put("masts", n->masts);
+    hs_report_put("outside", n->outside);
+    hs_report_close();
+}
+
 static int write_detail(const struct job *j, const struct settings *s)
 {
     char remark[160];
@@ -224,6 +242,7 @@ static int write_detail(const struct job *j, const struct settings *s)
            " walls, %" PRIu64 " lines, %" PRIu64 " masts",
            n.buildings, n.boxes, n.boxes_m2, n.footprint_m2, n.walls, n.lines, n.masts);
     printf("; %" PRIu64 " pieces outside the area left out\n", n.outside);
+    report_detail(&n);
     return 0;
 }
 
@@ -246,6 +265,20 @@ static int write_all(const struct job *j, const struct settings *s)
     return write_rasters(j, s);
 }
 
+static void report_area(const struct vector_area *area, const struct job *j,
+                        const struct settings *s)
+{
+    hs_report_object("area");
+    hs_report_put("south_deg", area->south);
+    hs_report_put("west_deg", area->west);
+    hs_report_put("north_deg", area->north);
+    hs_report_put("east_deg", area->east);
+    hs_report_close();
+    hs_report_put("width_px", j->map.grid.width);
+    hs_report_put("height_px", j->map.grid.height);
+    hs_report_put("cell_m", s->cell_m);
+}
+
 static int work(struct job *j, const struct settings *s)
 {
     struct vector_area area;
@@ -257,6 +290,7 @@ static int work(struct job *j, const struct settings *s)
     }
     printf("area %.4f,%.4f,%.4f,%.4f: %d x %d cells of %g m\n", area.south, area.west, area.north,
            area.east, j->map.grid.width, j->map.grid.height, s->cell_m);
+    report_area(&area, j, s);
     if ((s->ground &&
          vector_ground(&j->map, s->ground, s->map ? &j->codes : NULL, &j->table) != 0) ||
         add_sources(j) != 0 || vector_map_burn(&j->map) != 0) {

@@ -25,7 +25,7 @@ static void report_counts(const struct image *image, const struct image_findings
                           const struct image_verify_counts *n, bool is_complete)
 {
     hs_report_put("fault_count", findings->count);
-    hs_report_put("is_complete", is_complete);
+    hs_report_flag("is_complete", is_complete);
     hs_report_put("bytes", image->size_bytes);
     hs_report_put("entries", n->entries);
     hs_report_put("tiles", n->tiles);

@@ -2,6 +2,7 @@
 #include "import.h"
 
 #include "hs/error.h"
+#include "hs/report.h"
 #include "visual/cdb_models.h"
 
 #include <math.h>
@@ -87,6 +88,12 @@ static int read_elevation(struct import *im, struct visual_cdb *cdb, struct cdb_
                      ? visual_cdb_elevation(cdb, &tiles, g, im->terrain)
                      : hs_error(im->place, "choose a smaller --area", "has too many posts");
         take_grid(&im->terrain_grid, g, true, im->grid.crs);
+        hs_report_object("elevation");
+        hs_report_put("tiles", tiles.count);
+        hs_report_put("width_px", g->width);
+        hs_report_put("height_px", g->height);
+        hs_report_put("level", g->level);
+        hs_report_close();
         printf("elevation: %zu tiles, %d x %d posts of level %d\n", tiles.count, g->width,
                g->height, g->level);
     } else if (im->options->terrain) {
@@ -107,6 +114,7 @@ static int read_materials(struct import *im, struct visual_cdb *cdb, const struc
         return -1;
     }
     printf("materials: %zu tiles\n", tiles.count);
+    hs_report_put("material_tiles", tiles.count);
     const int result = visual_cdb_materials(&tiles, g, &im->canvas, import_class_of, im);
     cdb_tiles_free(&tiles);
     return result;
@@ -117,6 +125,14 @@ static void report_models(const struct import *im, const struct cdb_models_count
     printf("features: %llu points; %llu with models, %llu as boxes, %llu left out\n",
            (unsigned long long)n->features, (unsigned long long)n->placed,
            (unsigned long long)n->boxed, (unsigned long long)(n->missing + n->unreadable));
+    hs_report_object("features");
+    hs_report_put("points", n->features);
+    hs_report_put("with_models", n->placed);
+    hs_report_put("as_boxes", n->boxed);
+    hs_report_put("without_model", n->missing);
+    hs_report_put("unreadable", n->unreadable);
+    hs_report_put("without_class", n->unclassed);
+    hs_report_close();
     if (n->missing > 0) {
         hs_warn(im->place, "--boxes lets boxes of the size in the tables stand for them",
                 "%llu features are left out: their models are not in the tree (%s the first)",
@@ -186,6 +202,11 @@ static int import_tree(struct import *im, struct visual_cdb *cdb, const struct c
     }
     printf("imagery: %zu tiles, %d x %d cells of level %d\n", imagery->count, cells.width,
            cells.height, level);
+    hs_report_object("imagery");
+    hs_report_put("tiles", imagery->count);
+    hs_report_put("level", level);
+    hs_report_put("coarse_pixels", coarse);
+    hs_report_close();
     if (coarse > 0) {
         hs_warn(im->place, "choose an --area within the fine imagery, or a larger --cell",
                 "%.1f %% of the cells show imagery at least %d times coarser than they are",
@@ -196,6 +217,7 @@ static int import_tree(struct import *im, struct visual_cdb *cdb, const struct c
         place_models(im, cdb, &cells, &posts) != 0) {
         return -1;
     }
+    hs_report_put("files_left_out", cdb->strangers);
     if (cdb->strangers > 0) {
         hs_warn(im->place, NULL, "%llu files are left out: their names are not those of its tiles",
                 (unsigned long long)cdb->strangers);

@@ -2,6 +2,7 @@
 #include "import.h"
 
 #include "hs/error.h"
+#include "hs/report.h"
 
 #include <math.h>
 #include <ogr_srs_api.h>
@@ -163,6 +164,13 @@ static void print_model(const struct visual_model *m, const char *name)
 {
     printf("%s: %u triangles, %u upright or without area, %u materials\n", name, m->triangle_count,
            m->upright, m->material_count);
+    hs_report_object(NULL);
+    hs_report_put("path", name);
+    hs_report_put("triangles", m->triangle_count);
+    hs_report_put("upright_or_without_area", m->upright);
+    hs_report_put("materials", m->material_count);
+    hs_report_put("left_out", m->not_finite);
+    hs_report_close();
     if (m->not_finite > 0) {
         hs_warn(name, "mend the model", "%u triangles are left out: a corner is no number",
                 m->not_finite);
@@ -216,6 +224,7 @@ static int look(struct import *im)
     if (filled < 0 || !im->heights || !im->terrain) {
         return filled < 0 ? -1 : hs_error(im->place, "choose a larger --cell", "out of memory");
     }
+    hs_report_put("ground_pixels_filled", filled);
     printf("ground: %lld cells have none from above and take that around them\n",
            (long long)filled);
     for (size_t i = 0; i < (size_t)c->width * (size_t)c->height; i++) {
@@ -246,6 +255,7 @@ static int read_all(struct import *im, struct visual_model *models, struct bound
     if (read_axes(&axes, im->options) != 0) {
         return -1;
     }
+    hs_report_array("models");
     for (int i = 0; i < im->options->models.count; i++) {
         const char *name = im->options->models.items[i];
         struct bounds own = {{INFINITY, INFINITY}, {-INFINITY, -INFINITY}};
@@ -257,6 +267,7 @@ static int read_all(struct import *im, struct visual_model *models, struct bound
         widen(all, &models[i]);
         warn_coarse(im, name, &own);
     }
+    hs_report_close();
     return all->low[0] < all->high[0]
                ? 0
                : hs_error(im->place, "see whether its --up is right", "shows nothing from above");

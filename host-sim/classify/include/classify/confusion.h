@@ -36,6 +36,11 @@ double db_confusion_mean_recall(const struct db_confusion *c);
 void db_confusion_print(FILE *out, const struct db_confusion *c,
                         const struct db_class_table *table);
 
+/* The same as the object `key` of the report (hs/report.h). "given" of a class are the pixels that
+ * were given each class of the list. */
+void db_confusion_report(const char *key, const struct db_confusion *c,
+                         const struct db_class_table *table);
+
 /* The same as CSV: a heading, then one row a true class. Returns 0, or -1 reported. */
 int db_confusion_write(const char *path, const struct db_confusion *c,
                        const struct db_class_table *table);

@@ -19,8 +19,9 @@ void hs_report_object(const char *key);
 void hs_report_array(const char *key);
 void hs_report_close(void);
 
-/* hs_report_put(key, value): a figure or a text. NULL as a text, and a number that is not finite,
- * are null. */
+/* hs_report_put(key, value): a figure or a text, by its type. NULL as a text, and a number that is
+ * not finite, are null. What is true or false is put by hs_report_flag, because a comparison is an
+ * int; its key has `is`: is_complete. */
 void hs_report_text(const char *key, const char *value);
 void hs_report_text_within(const char *key, const char *value,
                            size_t room); /* at most `room` bytes,
@@ -33,8 +34,7 @@ void hs_report_flag(const char *key, bool value);
 #define hs_report_put(key, value)                                                                  \
     _Generic((value), char *                                                                       \
              : hs_report_text, const char *                                                        \
-             : hs_report_text, bool                                                                \
-             : hs_report_flag, float                                                               \
+             : hs_report_text, float                                                               \
              : hs_report_real, double                                                              \
              : hs_report_real, unsigned long                                                       \
              : hs_report_count, unsigned long long                                                 \

@@ -40,6 +40,9 @@ struct vector_census {
 /* Print a table of kinds and fates, and what was mended. `name` is the file's. */
 void vector_census_print(const struct vector_census *c, const char *name);
 
+/* The same as the next item of the array that is open in the report (hs/report.h). */
+void vector_census_report(const struct vector_census *c, const char *name);
+
 /* Returns 0 when every element read has one fate, or -1 with the error reported: a fault of this
  * program. */
 int vector_census_check(const struct vector_census *c, const char *name);

@@ -74,7 +74,8 @@ OGRCoordinateTransformationH vector_map_from(const struct vector_map *map, OGRSp
  * order, of equal ones the higher over the lower. Returns 0, or -1 with the error reported. */
 int vector_map_burn(struct vector_map *map);
 
-/* Print a line for each rule that made something, and where heights come from. */
+/* Print a line for each rule that made something, and where heights come from; and report them as
+ * "rules" (hs/report.h). */
 void vector_map_print(const struct vector_map *map);
 
 /* Harmless on a zeroed struct. */
