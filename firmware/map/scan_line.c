@@ -73,6 +73,9 @@ void lm_scan_blend_set(struct lm_scan_blend *b, const struct lm_db *db, uint32_t
     }
     b->grown_shift =
         has_crowns ? 32u - LM_TILE_CELLS_LOG2 - db->shift0 + LM_GROWN_TEXEL_LOG2 : TEXEL_SHIFT;
+    /* Three halves of a texel, which is map_mm over 2^(32 - 6 - grown_shift). */
+    b->is_stepped =
+        (uint64_t)2 * cell_mm << (32 - LM_TILE_CELLS_LOG2 - b->grown_shift) >= (uint64_t)3 * map_mm;
 }
 
 static inline uint64_t magnitude(int64_t x)
@@ -326,6 +329,7 @@ void lm_scan_line_run(struct lm_scan_line *line, struct lm_tile_cache *tiles, ui
                                   .grown = lm_grown,
                                   .height_dm_of_code = tiles->db->classes.height_dm,
                                   .grown_shift = blend->grown_shift,
+                                  .is_stepped = blend->is_stepped,
                                   .natural = blend->natural,
                                   .crowned = blend->crowned,
                                   .flat = blend->flat};

@@ -372,12 +372,14 @@ static struct ref_corners corners_of(const struct ref_db *db, const struct lm_ti
     const struct lm_tile_point *high = &tile->points[(int)y + 1][(int)x];
     const bool has_crowns = cell_m < 3.5 && ref_db_cell_m(db, 0) > 3.5;
     const double texels = has_crowns ? ldexp(1, (int)db->shift0 - 7) : 4;
+    const double row = (g->r + g->north) * texels, column = (g->c + g->east) * texels;
+    const bool is_stepped = cell_m >= 1.5 * ref_db_cell_m(db, 0) / texels;
     return (struct ref_corners){
         .cell = {low[0].cell, low[1].cell, high[0].cell, high[1].cell},
         .north = is_exact ? v : floor(v * 128) / 128,
         .east = is_exact ? u : floor(u * 128) / 128,
-        .texel_row = fmod((g->r + g->north) * texels, 64),
-        .texel_column = fmod((g->c + g->east) * texels, 64),
+        .texel_row = fmod(is_stepped ? floor(row + half) : row, 64),
+        .texel_column = fmod(is_stepped ? floor(column + half) : column, 64),
         .has_crowns = has_crowns,
     };
 }

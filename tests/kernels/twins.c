@@ -23,7 +23,7 @@ enum { GUARD = 32, ROOM = LM_CELLS_ROOM + GUARD, TILES = 3, UNTOUCHED = 0x5a5a5a
 struct input {
     struct hs_rng rng;
     uint32_t cells, first;
-    int32_t number[4]; /* floor, rise, ...: what the kernel has of that kind */
+    int32_t number[5]; /* floor, rise, ...: what the kernel has of that kind */
     uint32_t cell[ROOM], power_q24[LM_K_TAPS][ROOM], weight_q16[LM_K_TAPS], entry[ROOM];
     int32_t level_db_q8[ROOM], other_db_q8[ROOM], fall_db_q8[ROOM], rain_db_q8[ROOM];
     int32_t cell_of[ROOM], gain_db_q8[LM_K_CODES];
@@ -241,6 +241,7 @@ static void draw_blend(struct input *in)
     in->number[1] = (int32_t)hs_rng_below(&in->rng, 65536);
     in->number[3] = (int32_t)(hs_rng_u64(&in->rng) & hs_rng_u64(&in->rng) & 0xFFFF);
     in->number[2] = hs_rng_below(&in->rng, 2) ? (int32_t)hs_rng_below(&in->rng, 65536) : 0;
+    in->number[4] = (int32_t)hs_rng_below(&in->rng, 2);
 }
 
 static void draw_light(struct input *in)
@@ -309,6 +310,7 @@ static void run_tile_blend(const struct input *in, struct output *out, bool is_p
                                    .grown = lm_grown,
                                    .height_dm_of_code = in->class_lut.height_dm,
                                    .grown_shift = (uint32_t)in->number[0],
+                                   .is_stepped = in->number[4] != 0,
                                    .natural = (uint32_t)in->number[1],
                                    .crowned = (uint32_t)in->number[2],
                                    .flat = (uint32_t)in->number[3]};

@@ -28,7 +28,8 @@ static const uint8_t share_of_weight[64] = {
 struct neon_map {
     struct neon_source posts, cells;
     const uint8_t *grown;
-    int32x4_t down; /* to sixteenths of a texel */
+    int32x4_t down; /* to texels, or to sixteenths of one */
+    bool is_stepped;
     uint8x16_t marks, height_dm[2];
 };
 
@@ -80,7 +81,8 @@ static inline struct neon_map neon_map_of(const struct lm_k_blend *map)
         .posts = neon_source_of(map->points),
         .cells = neon_source_of(map->points - LM_TILE_POINTS - 1),
         .grown = (const uint8_t *)map->grown,
-        .down = vdupq_n_s32(4 - (int32_t)map->grown_shift),
+        .down = vdupq_n_s32((map->is_stepped ? 0 : 4) - (int32_t)map->grown_shift),
+        .is_stepped = map->is_stepped,
         .marks =
             vorrq_u8(vorrq_u8(neon_marks(map->natural, NATURAL), neon_marks(map->crowned, CROWNED)),
                      neon_marks(map->flat, FLAT)),
@@ -144,12 +146,59 @@ static inline void neon_set_cells(struct neon_corners *c, size_t n, uint16x8_t l
 /* ---- what has grown ---- */
 
 /* Where the texels of eight places are, in bytes. */
-static inline uint16x8_t neon_texel_offsets(uint16x8_t north_q4, uint16x8_t east_q4)
+static inline uint16x8_t neon_texel_offsets(uint16x8_t north, uint16x8_t east)
 {
     const uint16x8_t in_side = vdupq_n_u16(LM_K_GROWN_SIDE - 1);
-    const uint16x8_t row = vandq_u16(vshrq_n_u16(north_q4, 4), in_side);
-    const uint16x8_t column = vandq_u16(vshrq_n_u16(east_q4, 4), in_side);
+    const uint16x8_t row = vandq_u16(north, in_side), column = vandq_u16(east, in_side);
     return vshlq_n_u16(vmlaq_n_u16(column, row, LM_K_GROWN_STRIDE), 1);
+}
+
+/* The texels of sixteen places: bends, and crowns. */
+static inline uint8x16x2_t neon_texels_of(const uint8_t *grown, const uint16_t *offset)
+{
+    uint16_t texel[PLACES];
+    for (size_t k = 0; k < PLACES; k += 2) {
+        const uint16_t first = fx_load_u16(grown + offset[k]);
+        const uint16_t second = fx_load_u16(grown + offset[k + 1]);
+        texel[k] = first;
+        texel[k + 1] = second;
+    }
+    __asm__("" : "+m"(texel));
+    return vld2q_u8((const uint8_t *)texel);
+}
+
+/* Half the lean of a border from eight bends times 256. */
+static inline int8x8_t neon_lean_q7(int16x8_t bend_q8)
+{
+    return vmovn_s16(vqrdmulhq_n_s16(bend_q8, LM_K_LEAN_OF_BEND_Q7));
+}
+
+static inline int16x8_t neon_crown_q16(uint16x8_t crown_q8)
+{
+    return vreinterpretq_s16_u16(veorq_u16(crown_q8, vdupq_n_u16(0x8000)));
+}
+
+/* By the nearest texel alone. */
+static inline struct neon_grown neon_grown_nearest(const struct neon_map *map,
+                                                   const struct neon_places *at)
+{
+    uint16_t offset[PLACES];
+    for (size_t h = 0; h < 2; h++) {
+        const uint16x8_t north =
+            vuzp1q_u16(vreinterpretq_u16_u32(vrshlq_u32(at->north[2 * h], map->down)),
+                       vreinterpretq_u16_u32(vrshlq_u32(at->north[2 * h + 1], map->down)));
+        const uint16x8_t east =
+            vuzp1q_u16(vreinterpretq_u16_u32(vrshlq_u32(at->east[2 * h], map->down)),
+                       vreinterpretq_u16_u32(vrshlq_u32(at->east[2 * h + 1], map->down)));
+        vst1q_u16(offset + LM_LANES * h, neon_texel_offsets(north, east));
+    }
+    __asm__("" : "+m"(offset));
+    const uint8x16x2_t texel = neon_texels_of(map->grown, offset);
+    const int8x16_t bend = vreinterpretq_s8_u8(texel.val[0]);
+    return (struct neon_grown){vcombine_s8(neon_lean_q7(vshll_n_s8(vget_low_s8(bend), 8)),
+                                           neon_lean_q7(vshll_high_n_s8(bend, 8))),
+                               {neon_crown_q16(vshll_n_u8(vget_low_u8(texel.val[1]), 8)),
+                                neon_crown_q16(vshll_high_n_u8(texel.val[1], 8))}};
 }
 
 /* Two texels side by side at each of sixteen places: bends to the west, crowns there, and both to
@@ -208,9 +257,11 @@ static inline int16x8x2_t neon_bends(uint8x16x4_t texels, struct neon_way east)
                           vmlal_high_s8(vmull_high_s8(west_bend, left), east_bend, on)}};
 }
 
-static inline struct neon_grown neon_grown_at(const struct neon_map *map, struct neon_turn turn)
+/* By the four texels around each place. */
+static inline struct neon_grown neon_grown_between(const struct neon_map *map,
+                                                   const struct neon_places *at)
 {
-    const uint32x4_t *const north = turn.at->north, *const east = turn.at->east;
+    const uint32x4_t *const north = at->north, *const east = at->east;
     uint16x8_t north_q4[2], east_q4[2];
     uint16_t offset[PLACES];
     for (size_t h = 0; h < 2; h++) {
@@ -218,7 +269,8 @@ static inline struct neon_grown neon_grown_at(const struct neon_map *map, struct
                                  vreinterpretq_u16_u32(vshlq_u32(north[2 * h + 1], map->down)));
         east_q4[h] = vuzp1q_u16(vreinterpretq_u16_u32(vshlq_u32(east[2 * h], map->down)),
                                 vreinterpretq_u16_u32(vshlq_u32(east[2 * h + 1], map->down)));
-        vst1q_u16(offset + LM_LANES * h, neon_texel_offsets(north_q4[h], east_q4[h]));
+        vst1q_u16(offset + LM_LANES * h,
+                  neon_texel_offsets(vshrq_n_u16(north_q4[h], 4), vshrq_n_u16(east_q4[h], 4)));
     }
     __asm__("" : "+m"(offset));
     const struct neon_texels texels = neon_texels_at(map->grown, offset);
@@ -229,16 +281,16 @@ static inline struct neon_grown neon_grown_at(const struct neon_map *map, struct
     const uint16x8x2_t crown[2] = {neon_crowns(texels.south, u), neon_crowns(texels.north, u)};
     const int16x8x2_t bend[2] = {neon_bends(texels.south, u), neon_bends(texels.north, u)};
     struct neon_grown g;
-    int16x8_t lean[2];
+    int8x8_t lean_q7[2];
     for (size_t h = 0; h < 2; h++) {
         const uint16x8_t sum =
             vmlaq_u16(vmulq_u16(crown[0].val[h], left[h]), crown[1].val[h], on[h]);
         const int16x8_t bent = vmlaq_s16(vmulq_s16(bend[0].val[h], vreinterpretq_s16_u16(left[h])),
                                          bend[1].val[h], vreinterpretq_s16_u16(on[h]));
-        g.crown_q16[h] = vreinterpretq_s16_u16(veorq_u16(sum, vdupq_n_u16(0x8000)));
-        lean[h] = vqrdmulhq_n_s16(bent, LM_K_LEAN_OF_BEND_Q7);
+        g.crown_q16[h] = neon_crown_q16(sum);
+        lean_q7[h] = neon_lean_q7(bent);
     }
-    g.lean_q7 = vmovn_high_s16(vmovn_s16(lean[0]), lean[1]);
+    g.lean_q7 = vcombine_s8(lean_q7[0], lean_q7[1]);
     return g;
 }
 
@@ -305,14 +357,14 @@ static inline bool neon_needs_grown(const struct neon_winner of[4])
 }
 
 /* Find the winners, and take the weights of all but their cells away. */
-static inline uint8x16_t neon_contest(const struct neon_map *map, struct neon_turn turn,
+static inline uint8x16_t neon_contest(const struct neon_map *map, const struct neon_places *at,
                                       struct neon_corners *c, int16x8_t crown_q16[2])
 {
     struct neon_grown grown = {vdupq_n_s8(0), {vdupq_n_s16(0), vdupq_n_s16(0)}};
     struct neon_winner of[4];
     neon_set_classes(map, c, of);
     if (neon_needs_grown(of)) {
-        grown = neon_grown_at(map, turn);
+        grown = map->is_stepped ? neon_grown_nearest(map, at) : neon_grown_between(map, at);
     }
     struct neon_winner w = of[0];
     neon_challenge(&w, of[1], grown.lean_q7);
@@ -529,7 +581,7 @@ static inline void neon_blend(const struct neon_map *map, struct neon_turn turn)
     uint8x16_t kind = c.kind[0];
     const uint8x16_t is_crowned = vtstq_u8(vqtbl1q_u8(map->marks, kind), vdupq_n_u8(CROWNED));
     if (neon_any(vorrq_u8(vshrq_n_u8(differences, 4), is_crowned))) {
-        kind = neon_contest(map, turn, &c, crown_q16);
+        kind = neon_contest(map, turn.at, &c, crown_q16);
     }
     const uint8x16_t weight =
         vaddq_u8(vaddq_u8(c.weight[0], c.weight[1]), vaddq_u8(c.weight[2], c.weight[3]));

@@ -71,12 +71,29 @@ struct heights {
     int32_t dm[LM_K_CODES];
 };
 
-/* What has grown at a place, straight between texels, in sixteenths: bytes times 256. */
+/* What has grown at a place: bytes times 256. */
 struct grown {
     int32_t bend_q8, crown_q16;
 };
 
-static inline struct grown grown_at(const struct lm_k_blend *map, uint32_t north, uint32_t east)
+/* The number of the nearest texel, along one axis. */
+static inline int32_t nearest_texel(const struct lm_k_blend *map, uint32_t place)
+{
+    return (int32_t)(((place >> (map->grown_shift - 1)) + 1) >> 1 & (LM_K_GROWN_SIDE - 1));
+}
+
+static inline struct grown grown_nearest(const struct lm_k_blend *map, uint32_t north,
+                                         uint32_t east)
+{
+    const uint32_t texel =
+        map->grown[nearest_texel(map, north) * LM_K_GROWN_STRIDE + nearest_texel(map, east)];
+    return (struct grown){((int32_t)(texel << 24) >> 24) * 256,
+                          (int32_t)(texel & 0xFF00) - 128 * 256};
+}
+
+/* Straight between four texels, in sixteenths. */
+static inline struct grown grown_between(const struct lm_k_blend *map, uint32_t north,
+                                         uint32_t east)
 {
     const uint32_t north_q4 = north >> (map->grown_shift - 4);
     const uint32_t east_q4 = east >> (map->grown_shift - 4);
@@ -95,6 +112,11 @@ static inline struct grown grown_at(const struct lm_k_blend *map, uint32_t north
         ((int32_t)(next << 24) >> 24) * west + ((int32_t)(next << 8) >> 24) * east_ward;
     return (struct grown){bend_south * (16 - (int32_t)v) + bend_north * (int32_t)v,
                           (int32_t)(at_south * (16 - v) + at_north * v) - 128 * 256};
+}
+
+static inline struct grown grown_at(const struct lm_k_blend *map, uint32_t north, uint32_t east)
+{
+    return map->is_stepped ? grown_nearest(map, north, east) : grown_between(map, north, east);
 }
 
 static inline __attribute__((always_inline)) struct lm_ground blend(const struct lm_k_blend *map,

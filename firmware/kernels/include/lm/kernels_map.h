@@ -16,6 +16,7 @@
 #ifndef LM_KERNELS_MAP_H
 #define LM_KERNELS_MAP_H
 
+#include <stdbool.h>
 #include <stdint.h>
 
 #include "fx/lerp.h"
@@ -99,6 +100,7 @@ struct lm_k_blend {
     const uint16_t *grown;
     const uint16_t *height_dm_of_code; /* LM_K_CODES entries; differences up to 3.2 km */
     uint32_t grown_shift;              /* from a place in its tile to texels; 4..26 */
+    bool is_stepped; /* the nearest texel counts alone, not the four around a place */
     uint32_t natural, crowned, flat;
 };
 

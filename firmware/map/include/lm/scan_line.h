@@ -43,13 +43,14 @@ uint8_t lm_scan_lod(const struct lm_db *db, uint32_t cell_mm);
 /* Blend: how a line is read whose cells are shorter than the map's. Prepared once a picture. Law:
  * docs/EQUATIONS.md, "Finer than the map". */
 struct lm_scan_blend {
-    bool is_on;
-    uint32_t natural, crowned, flat, grown_shift; /* as in struct lm_k_blend */
+    bool is_on, is_stepped;
+    uint32_t natural, crowned, flat, grown_shift; /* with is_stepped, as in struct lm_k_blend */
 };
 
 /* Prepare the blend for lines whose cells are cell_mm long, below 2^30. It is on if they are
  * shorter than 2/3 of a cell of LOD 0. Crowns are drawn if cells are shorter than 3.5 m, half a
- * crown, and the map's are not. `db` is borrowed for the call. Cost: 150 instructions. */
+ * crown, and the map's are not. What has grown is read by its nearest texel if they are 3/2 of one
+ * or longer. `db` is borrowed for the call. Cost: 150 instructions. */
 void lm_scan_blend_set(struct lm_scan_blend *b, const struct lm_db *db, uint32_t cell_mm);
 
 /* Read the first `cells` (1..LM_CELLS_MAX) entries along the path.
