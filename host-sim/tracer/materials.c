@@ -101,9 +101,8 @@ int materials_for(const struct trace_records *r, const char *path, struct reflec
         const struct reflect_material *m = find(table.rows, table.count, name);
         m = m ? m : find(built_in, BUILT_IN, name);
         if (!m) {
-            hs_warn(name, "add it to the file of --materials",
-                    "an unknown material, taken for metal");
-            m = &built_in[0];
+            return hs_error(name, "add it to the file of --materials",
+                            "a material of the model that no table has");
         }
         law->materials[i] = *m;
     }

@@ -4,8 +4,8 @@
 #include "tracer/accumulate.h"
 #include "tracer/materials.h"
 #include "tracer/mesh_audit.h"
+#include "tracer/model_file.h"
 #include "tracer/models.h"
-#include "tracer/obj_file.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -15,7 +15,6 @@ struct setup setup_default(void)
 {
     const long processors = sysconf(_SC_NPROCESSORS_ONLN);
     return (struct setup){
-        .up = "y",
         .scale = 1,
         .depression_deg = 15,
         .wavelength_m = TRACE_WAVELENGTH_M,
@@ -36,13 +35,17 @@ struct setup setup_default(void)
 void setup_model_options(struct setup *s, struct hs_option *o)
 {
     const struct hs_option options[SETUP_MODEL_OPTIONS] = {
-        {"model", HS_INPUT, &s->model, 0, 0, "NAME|FILE.obj",
-         "a built-in model (see `landmass-target model --help`) or a Wavefront OBJ file", true},
+        {"model", HS_INPUT, &s->model, 0, 0, "NAME|FILE",
+         "a built-in model (see `landmass-target model --help`) or a file: OBJ, glTF, STL, PLY, "
+         "Collada, OpenFlight",
+         true},
         {"up", HS_TEXT, &s->up, 0, 0, "y|z",
-         "which axis of FILE.obj points up; default y, and x ahead in either case", false},
-        {"scale", HS_REAL, &s->scale, 1e-4, 1e4, "K", "metres for a unit of FILE.obj", false},
+         "which axis of FILE points up, where its format does not say it; default y, and x ahead "
+         "in either case",
+         false},
+        {"scale", HS_REAL, &s->scale, 1e-4, 1e4, "K", "metres for a unit of FILE", false},
         {"turn", HS_REAL, &s->turn_deg, -360, 360, "DEG",
-         "turn FILE.obj to the left, so that its nose points along x", false},
+         "turn FILE to the left, so that its nose points along x", false},
         {"as-is", HS_FLAG, &s->is_as_is, 0, 0, NULL,
          "take a model that is open, turned or degenerate: triangles without area are\n"
          "dropped, and both sides of all others reflect",
@@ -135,12 +138,12 @@ int setup_load(const struct setup *s, struct mesh *m)
 {
     const struct model_kind *kind = model_find(s->model);
     *m = (struct mesh){0};
-    if (strcmp(s->up, "y") != 0 && strcmp(s->up, "z") != 0) {
+    if (s->up && strcmp(s->up, "y") != 0 && strcmp(s->up, "z") != 0) {
         return hs_error("--up", NULL, "must be y or z, not %s", s->up);
     }
     if (kind) {
         kind->build(m);
-    } else if (obj_read(m, s->model, s->up[0] == 'y' ? OBJ_UP_Y : OBJ_UP_Z) != 0) {
+    } else if (model_file_read(m, s->model, s->up) != 0) {
         return -1;
     }
     if (check_model(s, kind, m) != 0) {
@@ -148,6 +151,9 @@ int setup_load(const struct setup *s, struct mesh *m)
         return -1;
     }
     mesh_place(m, s->scale, s->turn_deg, (struct vec){0, 0, 0});
+    if (!kind) {
+        model_file_doubt_size(m, s->model);
+    }
     return 0;
 }
 

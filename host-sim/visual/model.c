@@ -1,5 +1,6 @@
 #include "visual/model.h"
 
+#include "obj_check.h"
 #include "reader.h"
 
 #include "hs/error.h"
@@ -38,17 +39,31 @@ static bool is_openflight(const char *path)
     return strcasecmp(ending_of(path), ".flt") == 0;
 }
 
+static const struct kind *kind_of(const char *path)
+{
+    for (size_t i = 0; i < sizeof kinds / sizeof kinds[0]; i++) {
+        if (strcasecmp(ending_of(path), kinds[i].ending) == 0) {
+            return &kinds[i];
+        }
+    }
+    return NULL;
+}
+
+bool visual_model_says_axes(const char *path)
+{
+    return kind_of(path) != NULL;
+}
+
 static int choose_axes(struct reader_job *job, const struct visual_axes *axes)
 {
     const bool is_given = axes->metres_per_unit > 0 || axes->up != VISUAL_UP_UNKNOWN;
-    for (size_t i = 0; i < sizeof kinds / sizeof kinds[0]; i++) {
-        if (strcasecmp(ending_of(job->path), kinds[i].ending) == 0) {
-            job->metres_per_unit = 1;
-            job->up = kinds[i].up;
-            return is_given ? hs_error(job->name, "leave out --unit and --up",
-                                       "says itself how long its unit is and what is up")
-                            : 0;
-        }
+    const struct kind *kind = kind_of(job->path);
+    if (kind) {
+        job->metres_per_unit = 1;
+        job->up = kind->up;
+        return is_given ? hs_error(job->name, "leave out --unit and --up",
+                                   "says itself how long its unit is and what is up")
+                        : 0;
     }
     if (!aiIsExtensionSupported(ending_of(job->path))) {
         return hs_error(job->name, "convert it to glTF, Collada, OBJ or OpenFlight (.flt)",
@@ -129,6 +144,7 @@ static bool take_model(struct visual_model *m, struct taking *t, const char *pat
     m->embedded_count = head.embedded_count;
     m->upright = head.upright;
     m->not_finite = head.not_finite;
+    m->crossed = head.crossed;
     m->triangles = malloc((size_t)m->triangle_count * sizeof *m->triangles + 1);
     m->materials = malloc((size_t)m->material_count * sizeof *m->materials + 1);
     if (!m->triangles || !m->materials ||
@@ -165,6 +181,9 @@ static int take_file(struct visual_model *m, int fd, const char *name)
 
 static int read_with_assimp(struct visual_model *m, struct reader_job *job)
 {
+    if (strcasecmp(ending_of(job->path), ".obj") == 0 && obj_check(job->path, job->name) != 0) {
+        return -1;
+    }
     job->out_fd = memfd_create("landmass-model", MFD_CLOEXEC);
     if (job->out_fd < 0) {
         return hs_error(job->name, NULL, "out of memory");
@@ -213,10 +232,13 @@ int visual_model_read(struct visual_model *m, const char *path, const char *sear
                       const struct visual_axes *axes)
 {
     *m = (struct visual_model){.triangles = NULL};
-    struct reader_job job = {.path = path, .name = path};
+    struct reader_job job = {.path = path, .name = path, .keeps_walls = axes->keeps_walls};
     VSIStatBufL status;
     if (VSIStatL(path, &status) != 0) {
         return hs_error(path, "check the name", "cannot be opened");
+    }
+    if (!VSI_ISREG(status.st_mode)) {
+        return hs_error(path, "give the file of a model", "is no ordinary file");
     }
     if (status.st_size > MODEL_BYTES_MAX) {
         return hs_error(path, "cut it into several", "is larger than %d MiB",

@@ -11,7 +11,7 @@
  * a length of 8 bytes and its bytes. */
 struct reader_head {
     uint32_t triangle_count, material_count, embedded_count;
-    uint32_t upright, not_finite, unused;
+    uint32_t upright, not_finite, crossed;
 };
 
 enum reader_exit { READER_DONE, READER_REPORTED = 1, READER_NO_PROGRAM = 127 };
@@ -32,6 +32,7 @@ struct reader_job {
     const char *name; /* for messages */
     double metres_per_unit;
     enum visual_up up;
+    bool keeps_walls;
     int out_fd;
 };
 int reader_assimp(void *context);

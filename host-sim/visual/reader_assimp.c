@@ -6,6 +6,7 @@
 #include <assimp/material.h>
 #include <assimp/postprocess.h>
 #include <assimp/scene.h>
+#include <limits.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -163,7 +164,7 @@ static bool put_triangle(struct reading *r, const struct aiMesh *mesh, const str
         r->head.not_finite++;
         return true;
     }
-    if (is_upright(&t)) {
+    if (!r->job->keeps_walls && is_upright(&t)) {
         r->head.upright++;
         return true;
     }
@@ -230,17 +231,137 @@ static int write_all(struct reading *r)
     return is_whole ? 0 : hs_error(r->job->name, "reduce the model", "out of memory");
 }
 
+/* Area times two as a vector: of a polygon, about its first corner. */
+static struct aiVector3D area_of(const struct aiMesh *mesh, const struct aiFace *face)
+{
+    const struct aiVector3D *v = mesh->mVertices, o = v[face->mIndices[0]];
+    double x = 0, y = 0, z = 0;
+    for (unsigned i = 1; i + 1 < face->mNumIndices; i++) {
+        const struct aiVector3D p = v[face->mIndices[i]], q = v[face->mIndices[i + 1]];
+        const double px = (double)p.x - (double)o.x, py = (double)p.y - (double)o.y,
+                     pz = (double)p.z - (double)o.z;
+        const double qx = (double)q.x - (double)o.x, qy = (double)q.y - (double)o.y,
+                     qz = (double)q.z - (double)o.z;
+        x += py * qz - pz * qy;
+        y += pz * qx - px * qz;
+        z += px * qy - py * qx;
+    }
+    return (struct aiVector3D){(float)x, (float)y, (float)z};
+}
+
+/* A face before it is divided: its corners lie from `low` to `high`. */
+struct outline {
+    struct aiVector3D area;
+    unsigned corners, low, high;
+};
+
+static double dot(struct aiVector3D a, struct aiVector3D b)
+{
+    return (double)a.x * (double)b.x + (double)a.y * (double)b.y + (double)a.z * (double)b.z;
+}
+
+static struct outline outline_of(const struct aiMesh *mesh, const struct aiFace *face)
+{
+    struct outline o = {.corners = face->mNumIndices, .low = UINT_MAX};
+    for (unsigned i = 0; i < face->mNumIndices; i++) {
+        o.low = face->mIndices[i] < o.low ? face->mIndices[i] : o.low;
+        o.high = face->mIndices[i] > o.high ? face->mIndices[i] : o.high;
+    }
+    if (o.corners > 3) {
+        o.area = area_of(mesh, face);
+    }
+    return o;
+}
+
+static bool is_part(const struct aiFace *face, const struct outline *o)
+{
+    bool is_inside = true;
+    for (unsigned i = 0; i < face->mNumIndices; i++) {
+        is_inside = is_inside && face->mIndices[i] >= o->low && face->mIndices[i] <= o->high;
+    }
+    return is_inside;
+}
+
+/* The triangles of a simple polygon all turn as it does, and their areas add up to its own. A
+ * little is forgiven to rounded numbers, and the triangles below 1e-5 that Assimp leaves out.
+ * Moves `*at` behind them. */
+static bool is_filled(const struct aiMesh *mesh, unsigned *at, const struct outline *o)
+{
+    const double area = sqrt(dot(o->area, o->area)), little = 1e-4 * area + 2e-5 * o->corners;
+    double sum = 0, least = 0;
+    for (unsigned i = 0; i < o->corners - 2 && *at < mesh->mNumFaces; i++, ++*at) {
+        if (!is_part(&mesh->mFaces[*at], o)) {
+            break;
+        }
+        const struct aiVector3D own = area_of(mesh, &mesh->mFaces[*at]);
+        const double part = area > 0 ? dot(own, o->area) / area : sqrt(dot(own, own));
+        sum += part;
+        least = fmin(least, part);
+    }
+    return least >= -little && fabs(sum - area) <= little;
+}
+
+/* Faces of the divided mesh that are not filled, or all when they cannot be told apart. */
+static unsigned count_crossed(const struct aiMesh *mesh, const struct outline *outline,
+                              unsigned count)
+{
+    unsigned at = 0, crossed = 0;
+    for (unsigned f = 0; f < count; f++) {
+        if (outline[f].corners > 3) {
+            crossed += !is_filled(mesh, &at, &outline[f]);
+        } else {
+            at++;
+        }
+    }
+    return at == mesh->mNumFaces ? crossed : count;
+}
+
+/* Divide faces into triangles, and count those for which that went wrong. */
+static int divide_faces(struct reading *r)
+{
+    unsigned total = 0, at = 0;
+    for (unsigned m = 0; m < r->scene->mNumMeshes; m++) {
+        total += r->scene->mMeshes[m]->mNumFaces;
+    }
+    struct outline *outlines = calloc((size_t)total + 1, sizeof *outlines);
+    unsigned *counts = calloc((size_t)r->scene->mNumMeshes + 1, sizeof *counts);
+    for (unsigned m = 0; outlines && counts && m < r->scene->mNumMeshes; m++) {
+        counts[m] = r->scene->mMeshes[m]->mNumFaces;
+        for (unsigned f = 0; f < counts[m]; f++) {
+            outlines[at++] = outline_of(r->scene->mMeshes[m], &r->scene->mMeshes[m]->mFaces[f]);
+        }
+    }
+    r->scene = aiApplyPostProcessing(r->scene, aiProcess_Triangulate);
+    at = 0;
+    for (unsigned m = 0; r->scene && outlines && counts && m < r->scene->mNumMeshes; m++) {
+        r->head.crossed += count_crossed(r->scene->mMeshes[m], outlines + at, counts[m]);
+        at += counts[m];
+    }
+    const bool has_memory = outlines && counts;
+    free(outlines);
+    free(counts);
+    return has_memory ? 0 : hs_error(r->job->name, "reduce the model", "out of memory");
+}
+
+static int import(struct reading *r)
+{
+    r->scene = aiImportFile(r->job->path, aiProcess_ValidateDataStructure);
+    if (r->scene && divide_faces(r) != 0) {
+        return -1;
+    }
+    if (r->scene) {
+        r->scene = aiApplyPostProcessing(
+            r->scene, aiProcess_SortByPType | aiProcess_PreTransformVertices |
+                          aiProcess_TransformUVCoords | aiProcess_ValidateDataStructure);
+    }
+    return r->scene ? 0
+                    : hs_error(r->job->name, "open it in a modelling program and save it anew",
+                               "cannot be read: %s", aiGetErrorString());
+}
+
 int reader_assimp(void *context)
 {
     struct reading r = {.job = context};
-    r.scene =
-        aiImportFile(r.job->path, aiProcess_Triangulate | aiProcess_SortByPType |
-                                      aiProcess_PreTransformVertices | aiProcess_TransformUVCoords |
-                                      aiProcess_ValidateDataStructure);
-    if (!r.scene) {
-        hs_error(r.job->name, "open it in a modelling program and save it anew",
-                 "cannot be read: %s", aiGetErrorString());
-        return READER_REPORTED;
-    }
-    return count_faces(&r) == 0 && write_all(&r) == 0 ? READER_DONE : READER_REPORTED;
+    return import(&r) == 0 && count_faces(&r) == 0 && write_all(&r) == 0 ? READER_DONE
+                                                                         : READER_REPORTED;
 }

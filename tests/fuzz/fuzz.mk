@@ -44,7 +44,6 @@ $(call fuzz_target, chip_csv,     netem lib)
 $(call fuzz_target, netem_model,  netem tracer lib firmware fixed)
 $(call fuzz_target, hid,          lib drivers)
 $(call fuzz_target, panel_config, lib)
-$(call fuzz_target, obj,          tracer lib firmware fixed)
 $(call fuzz_target, traced,       tracer lib firmware fixed)
 $(O)/bin/tests/fuzz/test_fuzz_panel_config $(O)/bin/fuzz/panel_config: $(call sanitized,$(LIB_panel))
 

@@ -4,8 +4,8 @@
 #include "hs/error.h"
 #include "hs/png.h"
 #include "tracer/mesh_audit.h"
+#include "tracer/model_file.h"
 #include "tracer/models.h"
-#include "tracer/obj_file.h"
 #include "tracer/setup.h"
 
 #include <stdio.h>
@@ -84,7 +84,7 @@ int target_cmd_model(int argc, char **argv)
     }
     int result = describe(&s, &m);
     if (result == 0 && obj) {
-        result = obj_write(&m, obj);
+        result = model_file_write(&m, obj);
     }
     if (result == 0 && view) {
         result = draw(&s, &m, s.azimuth_deg, (int)size_px, view);

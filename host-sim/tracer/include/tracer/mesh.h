@@ -11,8 +11,8 @@
 #include <stdint.h>
 
 enum {
-    MESH_VERTICES_MAX = 1 << 24,
     MESH_TRIANGLES_MAX = 1 << 24,
+    MESH_VERTICES_MAX = 3 * MESH_TRIANGLES_MAX, /* none of a file's is shared */
 };
 #define MESH_SIZE_MAX_M 10000.0 /* of a coordinate, either way */
 

@@ -19,10 +19,11 @@ enum {
 enum visual_up { VISUAL_UP_UNKNOWN, VISUAL_UP_Y, VISUAL_UP_Z };
 enum visual_wrap { VISUAL_WRAP_REPEAT, VISUAL_WRAP_CLAMP, VISUAL_WRAP_MIRROR };
 
-/* What the user says of a file that does not say it itself. */
+/* What the user says of a file that does not say it itself, and wants of it. */
 struct visual_axes {
     double metres_per_unit; /* 0: not given */
     enum visual_up up;
+    bool keeps_walls; /* keep triangles of which nothing is seen from above */
 };
 
 struct visual_triangle {
@@ -45,6 +46,8 @@ struct visual_model {
     struct visual_material *materials; /* owned */
     uint32_t triangle_count, material_count;
     uint32_t upright;            /* triangles left out: nothing of them is seen from above */
+    uint32_t crossed;            /* faces that their triangles do not fill: their outline crosses
+                                    itself or folds back */
     uint32_t not_finite;         /* left out: a corner is no number, or farther than 1e7 m */
     uint32_t lost_textures;      /* that the reader looked for in vain */
     char lost[VISUAL_PATH_SIZE]; /* the first of them */
@@ -53,10 +56,14 @@ struct visual_model {
     uint32_t embedded_count;
 };
 
+/* Does this kind of file say how long its unit is and what is up? */
+bool visual_model_says_axes(const char *path);
+
 /* Read a file. `search` is a folder where textures of OpenFlight are looked for besides the file's
  * own; NULL: none. Corners come in metres, z up. glTF and OpenFlight have units and axes by their
  * standards, Collada says them in the file, and `axes` says those of all others. Returns 0, or -1
  * with the error reported and nothing to free:
+ * - it is no ordinary file, or larger than 1 GiB,
  * - the kind of file is unknown, or needs osgconv, which is not installed,
  * - units or axes are not known, or are given although the file has its own,
  * - the reader fails, crashes, or exceeds its limits of memory and time,

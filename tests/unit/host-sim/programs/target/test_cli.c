@@ -65,8 +65,17 @@ TEST(bad_input_ends_with_1_and_leaves_no_file)
     assert_int_equal(shell("! test -e out.png"), 0);
 }
 
-/* The same picture, whether the records took the way through a file or not, and from the model
- * that was written as OBJ. */
+/* Is the largest difference of a.csv and c.csv below a thousandth of the brightest pixel? */
+static int differ_little(void)
+{
+    return shell(
+        "paste -d, a.csv c.csv | awk -F, '{ n = NF / 2; for (i = 1; i <= n; i++) { "
+        "d = $i - $(i + n); d = d < 0 ? -d : d; worst = d > worst ? d : worst; "
+        "most = $i > most ? $i : most } } END { exit !(most > 0 && worst < most / 1000) }'");
+}
+
+/* The same picture, whether the records took the way through a file or not. From the model that was
+ * written as OBJ it is nearly the same: readers of models know single precision alone. */
 TEST(records_render_as_their_model_does)
 {
     assert_int_equal(run("render --model tank --azimuth 40 --law spm-vv --looks 4 --csv a.csv"), 0);
@@ -77,7 +86,7 @@ TEST(records_render_as_their_model_does)
     assert_int_equal(run("model --model tank --obj tank.obj --view tank.png --size 64"), 0);
     assert_int_equal(run("trace --model tank.obj --up z --azimuth 40 --out again.trace"), 0);
     assert_int_equal(run("render --records again.trace --law spm-vv --looks 4 --csv c.csv"), 0);
-    assert_int_equal(shell("cmp a.csv c.csv"), 0);
+    assert_int_equal(differ_little(), 0);
     assert_int_equal(run("materials >table.txt"), 0);
     assert_int_equal(run("render --model tank --azimuth 40 --law spm-vv --looks 4 "
                          "--materials table.txt --csv d.csv"),
