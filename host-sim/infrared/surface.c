@@ -29,12 +29,21 @@ struct ir_exchange ir_air_exchange(const struct ir_surface *s, const struct ir_a
                                 mass * s->wetness * vapour_heat * vapour_weight / pressure_hpa};
 }
 
+/* Sunlight on the slope. What hills around it hide or send is left out. */
+static double sun_w_m2(const struct ir_surface *s, const struct ir_air *air)
+{
+    const double up = 1 / sqrt(1 + s->rise_east * s->rise_east + s->rise_north * s->rise_north);
+    const double facing =
+        up * (air->sun[2] - s->rise_east * air->sun[0] - s->rise_north * air->sun[1]);
+    return air->beam_w_m2 * fmax(0, facing) + air->diffuse_w_m2 * (1 + up) / 2;
+}
+
 double ir_surface_inflow_w_m2(const struct ir_surface *s, const struct ir_air *air, double kelvin)
 {
     const struct ir_exchange e = ir_air_exchange(s, air, kelvin);
     const double vapour =
         e.latent > 0 ? e.latent * (ir_saturation_hpa(kelvin) - air->vapour_hpa) : 0;
-    return (1 - s->albedo) * air->sun_w_m2 +
+    return (1 - s->albedo) * sun_w_m2(s, air) +
            s->emissivity * (air->sky_w_m2 - ir_radiation_w_m2(kelvin)) -
            e.sensible * (kelvin - air->kelvin) - vapour;
 }

@@ -6,24 +6,34 @@
 
 static const double pi = 3.14159265358979323846;
 
-/* Cooper, "The absorption of solar radiation in solar stills", 1969. */
+/* Cooper, "The absorption of radiation in solar stills", 1969. */
 double ir_declination(int day_of_year)
 {
     return 23.45 * pi / 180 * sin(2 * pi * (284 + day_of_year) / 365);
 }
 
-double ir_sun_cosine(const struct ir_weather *w, double hour)
+void ir_sun(const struct ir_weather *w, double hour, double sun[3])
 {
-    const double declination = ir_declination(w->day_of_year);
-    return sin(w->latitude) * sin(declination) +
-           cos(w->latitude) * cos(declination) * cos((hour - 12) * pi / 12);
+    const double declination = ir_declination(w->day_of_year), turn = (hour - 12) * pi / 12;
+    const double outward = cos(declination) * cos(turn), axial = sin(declination);
+    sun[0] = -cos(declination) * sin(turn);
+    sun[1] = axial * cos(w->latitude) - outward * sin(w->latitude);
+    sun[2] = axial * sin(w->latitude) + outward * cos(w->latitude);
 }
 
-/* Haurwitz (1945), as pvlib has it; below clouds after Kasten and Czeplak (1980). */
-static double sun_w_m2(const struct ir_weather *w, double hour)
+/* On level ground: Haurwitz (1945), as pvlib has it; below clouds after Kasten and Czeplak (1980).
+ * The sky's share under a clear sky, and that clouds take the beam by their share of the sky, are
+ * UNSOURCED. */
+static void add_sun(struct ir_air *a, const struct ir_weather *w, double hour)
 {
-    const double c = ir_sun_cosine(w, hour);
-    return c <= 0 ? 0 : 1098 * c * exp(-0.059 / c) * (1 - 0.75 * pow(w->cloud, 3.4));
+    static const double diffuse_share = 0.15;
+    ir_sun(w, hour, a->sun);
+    const double c = a->sun[2];
+    if (c > 0) {
+        const double clear = 1098 * exp(-0.059 / c);
+        a->beam_w_m2 = (1 - w->cloud) * (1 - diffuse_share) * clear;
+        a->diffuse_w_m2 = c * ((1 - 0.75 * pow(w->cloud, 3.4)) * clear - a->beam_w_m2);
+    }
 }
 
 /* Bolton (1980). */
@@ -49,7 +59,8 @@ static double window_emissivity(const struct ir_air *a, double cloud)
 
 struct ir_air ir_weather_at(const struct ir_weather *w, double hour)
 {
-    struct ir_air a = {.sun_w_m2 = sun_w_m2(w, hour), .wind_m_s = w->wind_m_s};
+    struct ir_air a = {.wind_m_s = w->wind_m_s};
+    add_sun(&a, w, hour);
     a.kelvin = w->air_kelvin + w->air_range_kelvin / 2 * cos((hour - 15) * pi / 12);
     a.vapour_hpa =
         fmin(w->humidity * ir_saturation_hpa(w->air_kelvin), ir_saturation_hpa(a.kelvin));

@@ -161,13 +161,14 @@ static uint64_t seed_of_name(const char *name)
 void db_reflect_law_init(struct db_reflect_law *law, const struct db_class *c, double pixel_m)
 {
     *law = (struct db_reflect_law){.c = c, .seed = seed_of_name(c->name), .mean_db = c->gamma_db};
-    if (c->spread_db <= 0) {
-        return;
-    }
-    const double cell = fmin(cell_share_max, pow(cell_spread_db / c->spread_db, 2));
+    const double cell =
+        c->spread_db > 0 ? fmin(cell_share_max, pow(cell_spread_db / c->spread_db, 2)) : 0;
     law->weight[0] = sqrt((1 - cell) * object_share);
     law->weight[1] = sqrt((1 - cell) * (1 - object_share));
     law->weight[2] = sqrt(cell);
+    if (c->spread_db <= 0) {
+        return;
+    }
     fill_values(law, c->low_db, c->high_db);
     law->mean_db = 0;
     if (c->kind == DB_KIND_STRUCTURE && pixel_m >= house_m) {
@@ -182,7 +183,27 @@ void db_reflect_law_init(struct db_reflect_law *law, const struct db_class *c, d
     law->mean_db += 10 * log10(power);
 }
 
-/* The value at a place, without the pattern of the cell where that averages out. */
+/* Without the pattern of the cell where that averages out. `own` is the seed of the class. */
+static double rank_at(const struct db_reflect_law *law, uint64_t own, struct reflect_place p,
+                      bool has_cell)
+{
+    const bool grows = law->c->kind == DB_KIND_WATER || law->c->kind == DB_KIND_TREES;
+    const double object = grows ? reflect_pattern_smooth(own, p, smooth_m)
+                                : reflect_pattern_parcels(own, p, parcel_m);
+    return law->weight[0] * object + law->weight[1] * reflect_pattern_smooth(own + 1, p, tens_m) +
+           (has_cell ? law->weight[2] * reflect_pattern_smooth(own + 2, p, cell_m) : 0);
+}
+
+static uint64_t own_seed(const struct db_reflect_law *law, uint64_t seed)
+{
+    return seed * 0x9fb21c651e98df25u + law->seed;
+}
+
+double db_reflect_rank(const struct db_reflect_law *law, uint64_t seed, struct reflect_place p)
+{
+    return rank_at(law, own_seed(law, seed), p, true);
+}
+
 static double value_at(const struct db_reflect_law *law, uint64_t seed, struct reflect_place p,
                        bool has_cell)
 {
@@ -190,14 +211,8 @@ static double value_at(const struct db_reflect_law *law, uint64_t seed, struct r
     if (c->spread_db <= 0) {
         return c->gamma_db;
     }
-    const uint64_t own = seed * 0x9fb21c651e98df25u + law->seed;
-    const bool grows = c->kind == DB_KIND_WATER || c->kind == DB_KIND_TREES;
-    const double object = grows ? reflect_pattern_smooth(own, p, smooth_m)
-                                : reflect_pattern_parcels(own, p, parcel_m);
-    const double rank =
-        law->weight[0] * object + law->weight[1] * reflect_pattern_smooth(own + 1, p, tens_m) +
-        (has_cell ? law->weight[2] * reflect_pattern_smooth(own + 2, p, cell_m) : 0);
-    const double value = value_of_rank(law, rank);
+    const uint64_t own = own_seed(law, seed);
+    const double value = value_of_rank(law, rank_at(law, own, p, has_cell));
     if (law->spot_share <= 0) {
         return value;
     }

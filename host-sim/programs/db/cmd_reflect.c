@@ -52,7 +52,8 @@ static const struct hs_usage usage = {
         "and counted.\n\n"
         "Speckle is not added: the display unit does that. For the infrared the value is the "
         "share of 8..12 um\n"
-        "radiation that is reflected, in dB.\n\n"
+        "radiation that is reflected, in dB; `landmass-db infrared` makes pictures of what is "
+        "emitted.\n\n"
         "Example:\n"
         "  landmass-db reflect --class-raster scene-classes.tif --classes heaton6.classes \\\n"
         "      --method adjust --image scene.tif --out scene-gamma.tif",

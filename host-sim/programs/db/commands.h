@@ -9,6 +9,7 @@ int db_cmd_segment(int argc, char **argv);
 int db_cmd_correct(int argc, char **argv);
 int db_cmd_vectors(int argc, char **argv);
 int db_cmd_reflect(int argc, char **argv);
+int db_cmd_infrared(int argc, char **argv);
 int db_cmd_build(int argc, char **argv);
 int db_cmd_convert(int argc, char **argv);
 int db_cmd_inspect(int argc, char **argv);

@@ -12,6 +12,7 @@ static const struct hs_command commands[] = {
     {"vectors", "make classes, heights and detail of OpenStreetMap or other vectors",
      db_cmd_vectors},
     {"reflect", "give each pixel its radar reflectivity", db_cmd_reflect},
+    {"infrared", "make thermal pictures of a class raster at hours of a day", db_cmd_infrared},
     {"build", "make the database image from classes, reflectivity and terrain", db_cmd_build},
     {"inspect", "print what a database image holds", db_cmd_inspect},
     {"convert", "make an image of version 3 from one of version 2", db_cmd_convert},

@@ -14,6 +14,7 @@ struct ir_surface {
     double heat_capacity; /* J/(m3 K) */
     double wetness;       /* 0..1 of what free water evaporates */
     double roughness_m;
+    double rise_east, rise_north; /* of a slope, metres per metre */
 };
 
 /* Heat that leaves the surface through the air, per kelvin and per hPa; W/m2. */

@@ -14,8 +14,10 @@ struct ir_weather {
 
 /* What there is at one time. */
 struct ir_air {
-    double sun_w_m2;   /* on level ground, from sun and sky */
-    double sky_w_m2;   /* thermal radiation of the sky */
+    double beam_w_m2;    /* sunlight straight from the sun, on a plane that faces it */
+    double diffuse_w_m2; /* sunlight from the sky, on level ground */
+    double sun[3];       /* unit vector towards the sun: east, north, up */
+    double sky_w_m2;     /* thermal radiation of the sky */
     double sky_window; /* of the sky at 8..12 um, as a share of that of a body as warm as the air */
     double kelvin, vapour_hpa, wind_m_s;
     double density_kg_m3; /* 0: none, and no heat goes into it */
@@ -24,9 +26,9 @@ struct ir_air {
 /* Declination of the sun, radians. */
 double ir_declination(int day_of_year);
 
-/* Cosine of the sun's angle from the vertical; below 0 at night. `hour` is local solar time, 12
- * when the sun is highest. */
-double ir_sun_cosine(const struct ir_weather *w, double hour);
+/* Unit vector towards the sun: east, north, up, which is below 0 at night. `hour` is local solar
+ * time, 12 when the sun is highest. */
+void ir_sun(const struct ir_weather *w, double hour, double sun[3]);
 
 /* All of it at an hour, 0..24. */
 struct ir_air ir_weather_at(const struct ir_weather *w, double hour);

@@ -51,6 +51,10 @@ struct db_reflect_law {
 /* `pixel_m` is that of the class map, by which structures have spots (8 m or more) or not. */
 void db_reflect_law_init(struct db_reflect_law *law, const struct db_class *c, double pixel_m);
 
+/* The rank of a place in its class: normal with mean 0 and variance 1, for whatever else than
+ * reflectivity differs within a class. */
+double db_reflect_rank(const struct db_reflect_law *law, uint64_t seed, struct reflect_place p);
+
 /* The value at a place: the same for the same seed and place. */
 double db_reflect_assign(const struct db_reflect_law *law, uint64_t seed, struct reflect_place p);
 

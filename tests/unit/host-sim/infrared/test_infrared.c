@@ -113,15 +113,40 @@ TEST(the_sun_stands_where_almanacs_have_it)
     for (int i = 0; i < 2; i++) {
         double up = 0;
         for (int k = 0; k < 2400; k++) {
-            up += ir_sun_cosine(&w, k / 100.0) > 0 ? 0.01 : 0;
+            double sun[3];
+            ir_sun(&w, k / 100.0, sun);
+            assert_true(fabs(sun[0] * sun[0] + sun[1] * sun[1] + sun[2] * sun[2] - 1) < 1e-12);
+            up += sun[2] > 0 ? 0.01 : 0;
         }
         assert_true(fabs(up - hours[i]) < 0.04);
         w.day_of_year = 355;
     }
+    double sun[3];
     w.day_of_year = 172;
-    assert_true(fabs(acos(ir_sun_cosine(&w, 12)) * 180 / pi - (40 - 23.44)) < 0.05);
+    ir_sun(&w, 12, sun);
+    assert_true(fabs(acos(sun[2]) * 180 / pi - (40 - 23.44)) < 0.05 && sun[1] < 0);
+    ir_sun(&w, 5, sun); /* It rises in the north-east in summer, and is in the east till noon. */
+    assert_true(sun[0] > 0 && sun[1] > 0);
     w.latitude = -w.latitude;
-    assert_true(fabs(acos(ir_sun_cosine(&w, 12)) * 180 / pi - (40 + 23.44)) < 0.05);
+    ir_sun(&w, 12, sun);
+    assert_true(fabs(acos(sun[2]) * 180 / pi - (40 + 23.44)) < 0.05 && sun[1] > 0);
+}
+
+/* Brutsaert's clear sky has 1.24 (10 / 288)^(1/7) = 0.767 of a black body at 10 hPa and 288 K. With
+ * half the sky in cloud it is 0.42 + 0.58 of that, after Unsworth and Monteith. The window of a
+ * clear sky is darker: 0.24 + 2.98e-6 exp(3000 / 288) = 0.339 (Idso). */
+TEST(the_sky_shines_as_its_formulas_have_it)
+{
+    struct ir_weather w = {.air_kelvin = 288};
+    w.humidity = 10 / ir_saturation_hpa(288);
+    assert_true(fabs(ir_saturation_hpa(293.15) - 23.37) < 0.03); /* steam tables: 23.37 hPa */
+    struct ir_air a = ir_weather_at(&w, 0);
+    assert_true(fabs(a.sky_w_m2 / ir_radiation_w_m2(288) - 0.767) < 0.001);
+    assert_true(fabs(a.sky_window - 0.339) < 0.001);
+    w.cloud = 0.5;
+    a = ir_weather_at(&w, 0);
+    assert_true(fabs(a.sky_w_m2 / ir_radiation_w_m2(288) - (0.42 + 0.58 * 0.767)) < 0.001);
+    assert_true(fabs(a.sky_window - (0.5 + 0.339 / 2)) < 0.001);
 }
 
 /* ---- The Moon ---- */
@@ -129,7 +154,7 @@ TEST(the_sun_stands_where_almanacs_have_it)
 static struct ir_air moon_at(const void *context, double part)
 {
     (void)context;
-    return (struct ir_air){.sun_w_m2 = 1361 * fmax(0, -cos(2 * pi * part)), .kelvin = 220};
+    return (struct ir_air){.diffuse_w_m2 = 1361 * fmax(0, -cos(2 * pi * part)), .kelvin = 220};
 }
 
 /* Williams and others, Icarus 283 (2016), from Diviner: at the equator 387 to 397 K at most, some
@@ -177,8 +202,12 @@ static const struct ir_weather summer = {.latitude = 0.698,
 static struct ir_surface surface_of(const struct db_class_table *t, const char *name)
 {
     const struct db_thermal *h = &t->items[db_class_find(t, name)].thermal;
-    return (struct ir_surface){h->emissivity,          h->albedo,  h->conductivity,
-                               1e6 * h->heat_capacity, h->wetness, h->roughness_m};
+    return (struct ir_surface){.emissivity = h->emissivity,
+                               .albedo = h->albedo,
+                               .conductivity = h->conductivity,
+                               .heat_capacity = 1e6 * h->heat_capacity,
+                               .wetness = h->wetness,
+                               .roughness_m = h->roughness_m};
 }
 
 struct day {
@@ -296,6 +325,33 @@ TEST(clouds_and_wind_even_out_the_day)
     w.wind_m_s = summer.wind_m_s;
     w.latitude = -w.latitude;
     assert_true(day_of(&s, &w).highest < clear.highest - 10);
+}
+
+/* A slope of 30 degrees: facing east it is hottest in the morning, facing west in the afternoon,
+ * and facing south warmer than facing north, all the more in winter. */
+TEST(slopes_are_warmest_when_they_face_the_sun)
+{
+    struct db_class_table t;
+    read_table(&t);
+    struct ir_surface s = surface_of(&t, "soil");
+    struct ir_weather w = summer;
+    const struct day level = day_of(&s, &w);
+    s.rise_east = -0.577; /* It falls towards the east. */
+    const struct day east = day_of(&s, &w);
+    s.rise_east = 0.577;
+    const struct day west = day_of(&s, &w);
+    print_message("# east %.2f h, west %.2f h\n", east.hottest_h, west.hottest_h);
+    assert_true(east.hottest_h < level.hottest_h - 1 && west.hottest_h > level.hottest_h + 1);
+    for (int winter = 0; winter < 2; winter++) {
+        w.day_of_year = winter ? 355 : 172;
+        s.rise_east = 0;
+        s.rise_north = 0.577;
+        const struct day south = day_of(&s, &w);
+        s.rise_north = -0.577;
+        const double difference = south.highest - day_of(&s, &w).highest;
+        print_message("# south is %.1f K warmer than north\n", difference);
+        assert_true(difference > (winter ? 15 : 2));
+    }
 }
 
 /* What enters the ground in a day leaves it: the heat that the laws of the surface give sums to

@@ -1,0 +1,200 @@
+/* landmass-db infrared: its files, their values, and what it refuses. */
+#include "check.h"
+#include "fixture.h"
+#include "gis/raster.h"
+#include "infrared/planck.h"
+
+#include "hs/error.h"
+
+#include <math.h>
+#include <ogr_srs_api.h>
+#include <stdio.h>
+#include <string.h>
+#include <unistd.h>
+
+enum { SIDE = 96 };
+
+static const char head[] =
+    "[water]\ncolour = 1 1 9\nkind = water\ngamma_db = -40\nspread_db = 3\n"
+    "limits_db = -49 -31\nemissivity = 0.985 0.002\nalbedo = 0.08 0.01\n"
+    "conductivity = 400 0\nheat_capacity = 4.18\nwetness = 1\n"
+    "roughness_m = 0.0001\n";
+static const char ground[] =
+    "[%s]\ncolour = %d 1 1\nkind = ground\ngamma_db = -20\nspread_db = 3\n"
+    "limits_db = -29 -11\nemissivity = 0.95 0.01\nalbedo = %s\n"
+    "conductivity = %s\nheat_capacity = 1.94\n";
+
+/* Stripes of water, a dark road whose conductivity varies and a bright one whose albedo does, and
+ * which conducts more; and a column of no data. The terrain rises towards the west by one in two:
+ * it faces east. */
+static void write_scene(void)
+{
+    static float class_of[SIDE * SIDE], height[SIDE * SIDE];
+    char table[2000], one[500], other[500];
+    struct db_grid grid = fixture_grid(SIDE, SIDE);
+    for (int i = 0; i < SIDE * SIDE; i++) {
+        class_of[i] = i % SIDE == SIDE - 1 ? 255 : (float)(3 * (i % SIDE) / SIDE);
+        height[i] = 0.5F * (float)(SIDE - i % SIDE);
+    }
+    fixture_raster("class.tif", &grid, GDT_Byte, class_of, 255);
+    fixture_raster("dem.tif", &grid, GDT_Float32, height, -1);
+    OSRDestroySpatialReference(grid.crs);
+    snprintf(one, sizeof one, ground, "dark", 2, "0.1 0", "0.75 0.1");
+    snprintf(other, sizeof other, ground, "bright", 3, "0.4 0.02", "1.5 0");
+    snprintf(table, sizeof table, "%s%s%s", head, one, other);
+    fixture_write("warm.classes", table);
+}
+
+#define INFRARED "infrared --class-raster %s --classes %s --out %s --air 22 --wind 2 "
+#define PATHS    fixture_path("class.tif"), fixture_path("warm.classes"), fixture_path("ir")
+
+/* Both bands of a picture. */
+static void read_picture(const char *name, float *values)
+{
+    static uint8_t valid[SIDE * SIDE];
+    struct db_raster r;
+    assert_int_equal(db_raster_open_one(&r, fixture_path(name)), 0);
+    assert_int_equal(r.band_count, 2);
+    assert_int_equal(db_raster_read(&r, 0, SIDE, values, valid), 0);
+    for (int i = 0; i < SIDE * SIDE; i++) {
+        assert_int_equal(valid[i], i % SIDE != SIDE - 1);
+    }
+    db_raster_close(&r);
+}
+
+struct moments {
+    double mean, deviation;
+};
+
+static struct moments of_stripe(const float *values, int stripe)
+{
+    double sum = 0, square = 0, count = 0;
+    for (int i = 0; i < SIDE * SIDE; i++) {
+        if (i % SIDE < SIDE - 1 && 3 * (i % SIDE) / SIDE == stripe) {
+            sum += (double)values[i];
+            square += (double)values[i] * (double)values[i];
+            count++;
+        }
+    }
+    return (struct moments){sum / count, sqrt(fmax(0, square / count - pow(sum / count, 2)))};
+}
+
+TEST(pictures_hold_kelvin_and_the_radiance_that_belongs_to_them)
+{
+    static float day[2 * SIDE * SIDE], night[2 * SIDE * SIDE];
+    write_scene();
+    assert_int_equal(fixture_run(NULL, 0, INFRARED, PATHS), 0);
+    read_picture("ir/infrared-0400.tif", night);
+    read_picture("ir/infrared-1400.tif", day);
+    for (int stripe = 0; stripe < 3; stripe++) {
+        print_message("# class %d: %.1f and %.1f K, deviation %.2f and %.2f K\n", stripe,
+                      of_stripe(night, stripe).mean, of_stripe(day, stripe).mean,
+                      of_stripe(night, stripe).deviation, of_stripe(day, stripe).deviation);
+    }
+    assert_true(of_stripe(day, 1).mean > of_stripe(day, 2).mean + 5);
+    assert_true(of_stripe(day, 2).mean > of_stripe(day, 0).mean + 5);
+    assert_true(of_stripe(night, 0).mean > of_stripe(night, 2).mean);
+    assert_true(of_stripe(night, 2).mean > of_stripe(night, 1).mean);
+    assert_true(of_stripe(day, 1).deviation > 0.2 && of_stripe(day, 2).deviation > 0.2);
+    for (int i = 0; i < SIDE * SIDE; i++) {
+        if (i % SIDE < SIDE - 1) {
+            const double black = ir_band_radiance(8, 12, (double)day[i]);
+            const double share = (double)day[SIDE * SIDE + i] / black;
+            assert_true(share > 0.9 && share < 1);
+        }
+    }
+}
+
+/* Water has the season's mean, the air's unless it is given. */
+TEST(water_has_the_mean_that_is_asked_for)
+{
+    static float values[2 * SIDE * SIDE];
+    write_scene();
+    static const char *const more[] = {"--hours 0,6,12,18", "--hours 0,6,12,18 --water 10"};
+    for (int k = 0; k < 2; k++) {
+        double mean = 0;
+        assert_int_equal(fixture_run(NULL, 0, INFRARED "%s", PATHS, more[k]), 0);
+        for (int hour = 0; hour < 24; hour += 6) {
+            char name[40];
+            snprintf(name, sizeof name, "ir/infrared-%02d00.tif", hour);
+            read_picture(name, values);
+            mean += of_stripe(values, 0).mean / 4;
+        }
+        assert_true(fabs(mean - (k ? 283.15 : 295.15)) < 0.3);
+    }
+}
+
+TEST(ground_that_faces_east_is_warmer_in_the_morning_and_colder_in_the_evening)
+{
+    static float flat[2 * SIDE * SIDE], slope[2 * SIDE * SIDE];
+    static const char *const names[] = {"ir/infrared-0800.tif", "ir/infrared-1730.tif"};
+    write_scene();
+    for (int k = 0; k < 2; k++) {
+        assert_int_equal(fixture_run(NULL, 0, INFRARED "--hours 8,17.5", PATHS), 0);
+        read_picture(names[k], flat);
+        assert_int_equal(fixture_run(NULL, 0, INFRARED "--hours 8,17.5 --terrain %s", PATHS,
+                                     fixture_path("dem.tif")),
+                         0);
+        read_picture(names[k], slope);
+        const double more = of_stripe(slope, 1).mean - of_stripe(flat, 1).mean;
+        print_message("# %s: %+.1f K\n", names[k], more);
+        assert_true(k == 0 ? more > 4 : more < -2);
+    }
+}
+
+TEST(curves_and_pictures_lie_beside_the_rasters)
+{
+    static const char *const names[] = {"ir/infrared.csv", "ir/infrared.png",
+                                        "ir/infrared-1330.png", "ir/infrared-1330.tif"};
+    write_scene();
+    assert_int_equal(fixture_run(NULL, 0, INFRARED "--hours 13.5", PATHS), 0);
+    for (int i = 0; i < 4; i++) {
+        assert_int_equal(access(fixture_path(names[i]), R_OK), 0);
+    }
+    FILE *f = fopen(fixture_path("ir/infrared.csv"), "r");
+    char line[200];
+    int lines = 0;
+    assert_non_null(f);
+    while (fgets(line, sizeof line, f)) {
+        double hour, water, dark, bright;
+        if (lines++ == 0) {
+            assert_string_equal(line, "hour,water,dark,bright\n");
+        } else {
+            assert_int_equal(sscanf(line, "%lf,%lf,%lf,%lf", &hour, &water, &dark, &bright), 4);
+            assert_true(hour == (lines - 2) / 2.0 && fabs(water - 22) < 3);
+        }
+    }
+    fclose(f);
+    assert_int_equal(lines, 49);
+}
+
+TEST(the_command_says_what_is_wrong)
+{
+    static const struct {
+        int code;
+        const char *more, *says;
+    } wrong[] = {
+        {HS_EXIT_FAILED, "--hours 4,25", "`25` is no hour"},
+        {HS_EXIT_FAILED, "--hours noon", "`noon` is no hour"},
+        {HS_EXIT_USAGE, "--date 02-30", "needs a month and a day"},
+        {HS_EXIT_USAGE, "--date 13-01", "needs a month and a day"},
+        {HS_EXIT_USAGE, "--cloud 2", "needs a number within its range"},
+        {HS_EXIT_USAGE, "--latitude 91", "needs a number within its range"},
+        {HS_EXIT_FAILED, "--terrain nosuch.tif", "cannot be opened"},
+    };
+    write_scene();
+    for (size_t i = 0; i < sizeof wrong / sizeof wrong[0]; i++) {
+        if (!fixture_fails(wrong[i].code, wrong[i].says, INFRARED "%s", PATHS, wrong[i].more)) {
+            fail_msg("%s", wrong[i].more);
+        }
+    }
+    fixture_write("x.classes",
+                  "[soil]\ncolour = 1 1 1\nkind = ground\ngamma_db = -20\n"
+                  "spread_db = 3\nlimits_db = -29 -11\nemissivity = 0.9 0.01\n");
+    assert_true(fixture_fails(HS_EXIT_FAILED, ":1: class [soil] has no `albedo`",
+                              "infrared --class-raster %s --classes %s --out %s",
+                              fixture_path("class.tif"), fixture_path("x.classes"),
+                              fixture_path("ir")));
+}
+
+TEST_GROUP(fixture_open, fixture_close);
