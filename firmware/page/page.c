@@ -119,7 +119,7 @@ void lm_page_init(struct lm_page *p, const struct lm_radar *radar)
     memset(p, 0, sizeof *p);
     p->radar = radar;
     p->range_index = (uint8_t)lm_radar_find_range(radar, radar->range_start_nm);
-    p->cell_index = 3;
+    p->cell_mm = 5000;
     for (uint32_t osb = 1; osb <= LM_OSBS; osb++) {
         const struct lm_page_key *key = find_key(&lm_page_radar, (uint8_t)osb);
         p->hidden |= key && key->starts_hidden ? OSB_BIT(osb) : 0;
@@ -255,6 +255,12 @@ void lm_page_show_picture(struct lm_page *p, enum lm_picture_kind kind)
 {
     p->picture = (uint8_t)kind;
     p->is_frozen = false;
+}
+
+void lm_page_note_patch(struct lm_page *p, const struct lm_sar_command *patch)
+{
+    p->cell_mm = patch->cell_mm;
+    p->is_plan = patch->is_plan;
 }
 
 void lm_page_note_tilt(struct lm_page *p, int32_t tilt)

@@ -1,18 +1,11 @@
 /* Radar page: mode, field of view and scales of the picture, cursor, declutter. */
 #include "lm/font.h"
+#include "lm/text.h"
 #include "page_table.h"
 
-/* Cells of a patch that the page offers. */
-static const struct {
-    uint32_t mm;
-    char words[6];
-} cells[LM_SAR_CELLS_OFFERED] = {{1000, "1M"}, {2000, "2M"},   {3000, "3M"},
-                                 {5000, "5M"}, {10000, "10M"}, {20000, "20M"}};
-
-uint32_t lm_page_cell_mm(const struct lm_page *p)
-{
-    return cells[p->cell_index].mm;
-}
+/* Cells of a patch that the page offers, mm. A command may ask for others. */
+static const uint16_t cells_mm[] = {1000, 2000, 3000, 5000, 10000, 20000};
+enum { CELLS = sizeof cells_mm / sizeof *cells_mm };
 
 static bool is_patch(const struct lm_page *p)
 {
@@ -67,7 +60,15 @@ static uint32_t press_fov(struct lm_page *p, int32_t step)
 
 static void label_cell(const struct lm_page *p, struct lm_label *label)
 {
-    lm_label_set(label, "CELL", cells[p->cell_index].words);
+    struct lm_text t = {0};
+    const uint32_t tenths = (p->cell_mm + 50) / 100;
+    lm_text_number(&t, tenths / 10, 1);
+    if (tenths % 10 != 0) {
+        lm_text_add(&t, ".");
+        lm_text_number(&t, tenths % 10, 1);
+    }
+    lm_text_add(&t, "M");
+    lm_label_set(label, "CELL", t.words);
 }
 
 /* In a sector the key is free: a patch begins with the cell of the one before. */
@@ -76,7 +77,12 @@ static uint32_t press_cell(struct lm_page *p, int32_t step)
     if (!is_patch(p)) {
         return 0;
     }
-    p->cell_index = (uint8_t)((p->cell_index + (uint32_t)step) % LM_SAR_CELLS_OFFERED);
+    (void)step;
+    uint32_t larger = 0;
+    while (larger < CELLS && cells_mm[larger] <= p->cell_mm) {
+        larger++;
+    }
+    p->cell_mm = cells_mm[larger % CELLS];
     return LM_EFFECT_PATCH;
 }
 

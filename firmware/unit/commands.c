@@ -41,7 +41,7 @@ static enum lm_refusal try_patch(struct lm_unit *u, const struct lm_sar_command 
 static void restart_patch(struct lm_unit *u, uint64_t now_us)
 {
     struct lm_sar_command command = u->picture.sar.command;
-    command.cell_mm = lm_page_cell_mm(&u->page);
+    command.cell_mm = u->page.cell_mm;
     command.is_plan = u->page.is_plan;
     const enum lm_refusal reason = try_patch(u, &command, now_us);
     if (reason != LM_REFUSED_NOT) {
@@ -98,7 +98,7 @@ static enum lm_refusal designate(struct lm_unit *u, uint64_t now_us)
         return LM_REFUSED_NOT;
     }
     const struct lm_sar_command command = {.centre = u->cursor.position,
-                                           .cell_mm = lm_page_cell_mm(&u->page),
+                                           .cell_mm = u->page.cell_mm,
                                            .is_from_ownship = true,
                                            .is_plan = u->page.is_plan};
     if (!u->cursor.is_placed || u->page.is_override) {

@@ -89,6 +89,7 @@ static enum lm_refusal start(struct lm_picture *p, const struct lm_sar_command *
         return reason;
     }
     (void)lm_sar_start(&p->sar, p->lent.radar, &map->db, &command, &scene); /* it is judged */
+    lm_page_note_patch(p->lent.page, &command);
     lm_sar_prefetch_targets(&p->sar, &map->tiles);
     const struct lm_patch_fan fan = {.lines = p->sar.lines,
                                      .cells = cells_of(p),

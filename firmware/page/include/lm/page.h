@@ -10,6 +10,7 @@
 #include "lm/keys.h"
 #include "lm/palette.h"
 #include "lm/radar.h"
+#include "lm/sar_command.h"
 
 /* Formats: what the page shows. */
 enum lm_format {
@@ -39,8 +40,7 @@ enum {
     LM_GAIN_MAX_DB = 30,   /* gain is within +- this */
     LM_KNOB_FULL_Q8 = 405, /* 1.58 dB, which is +-20 % of amplitude, at full deflection */
     LM_WINDOW_MAX_DB = 20, /* black and white may be moved by +- this */
-    LM_GAMMA_MAX = 10,     /* display gamma may be moved by +- this, in tenths */
-    LM_SAR_CELLS_OFFERED = 6
+    LM_GAMMA_MAX = 10      /* display gamma may be moved by +- this, in tenths */
 };
 
 /* The operator's selection: kind of picture, mode, field of view, scales, freeze and the settings
@@ -54,7 +54,7 @@ struct lm_page {
     uint8_t fov;                  /* of the sector: enum lm_fov, one that the mode has */
     uint8_t range_index;          /* row of the radar table's scales, 0..lm_page_range_last */
     uint8_t azimuth_index;        /* index of the radar table's sectors, 0..LM_AZIMUTHS - 1 */
-    uint8_t cell_index;           /* of the patch, 0..LM_SAR_CELLS_OFFERED - 1: lm_page_cell_mm */
+    uint32_t cell_mm;             /* of the patch: the next one's, if this one cannot have it */
     bool is_baro;                 /* the barometric height is used, if there is one */
     bool is_plan;                 /* a patch is shown as a plan, without layover */
     bool is_tilt_manual;          /* the operator, not the radar, sets the tilt */
@@ -114,6 +114,9 @@ void lm_page_set_frozen(struct lm_page *p, bool is_frozen);
 /* Set the kind of the picture that begins, and end a freeze. */
 void lm_page_show_picture(struct lm_page *p, enum lm_picture_kind kind);
 
+/* Take over the cell and the geometry of the patch that begins: a command may have chosen them. */
+void lm_page_note_patch(struct lm_page *p, const struct lm_sar_command *patch);
+
 /* Set the tilt, signed BAM, that the radar chose. Ignored while the operator sets the tilt. */
 void lm_page_note_tilt(struct lm_page *p, int32_t tilt);
 
@@ -130,9 +133,6 @@ bool lm_page_label(const struct lm_page *p, uint8_t osb, struct lm_label *label)
  * 1 on the left edge and `osb` + 1 on the right one. False, and *value unspecified, if there is
  * none. */
 bool lm_page_value(const struct lm_page *p, uint8_t osb, struct lm_label *value);
-
-/* Cell size of a patch that the operator selected, in millimetres. */
-uint32_t lm_page_cell_mm(const struct lm_page *p);
 
 /* Tone of a picture: the radar table's, changed by gain, knob and settings. lm_tone_set accepts it
  * if the table keeps its contract. */

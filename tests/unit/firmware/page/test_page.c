@@ -564,6 +564,26 @@ TEST(osb_16_chooses_the_cell_and_draws_the_patch_again)
     free_rig(r);
 }
 
+TEST(the_page_shows_the_cell_and_the_geometry_that_a_command_chose)
+{
+    struct rig *r = fly_rig();
+    struct lm_control patch = patch_here;
+    patch.sar.cell_mm = 2500;
+    patch.sar.is_plan = true;
+    command(r, patch);
+    run(r, 0.5);
+    struct lm_label label;
+    assert_true(lm_page_label(&r->unit.page, 16, &label));
+    assert_string_equal(label.line[1], "2.5M");
+    press(r, 16);
+    assert_int_equal(r->unit.picture.sar.command.cell_mm,
+                     3000); /* the next larger that is offered */
+    assert_true(says(r, "3M") && r->unit.picture.sar.command.is_plan);
+    press(r, 5);
+    assert_true(labelled(r, 16, "SAR", 1));
+    free_rig(r);
+}
+
 /* How far from straight up the outer half of the picture reaches, degrees. */
 static double widest_degrees(const struct rig *r)
 {

@@ -92,7 +92,8 @@ static void check_bounds(const struct rig *r)
     assert_true(p->range_index < lm_radar_default.ranges && p->azimuth_index < LM_AZIMUTHS);
     assert_true(p->format <= LM_FORMAT_TEST && p->mode < LM_SECTOR_MODES);
     assert_true(p->fov < LM_FOVS && p->range_index <= lm_page_range_last(p) &&
-                p->cell_index < LM_SAR_CELLS_OFFERED);
+                p->cell_mm >= lm_radar_default.sar.cell_min_mm &&
+                p->cell_mm <= lm_radar_default.sar.cell_max_mm);
     assert_true(abs(p->gain_db) <= LM_GAIN_MAX_DB && abs(p->knob) <= LM_FULL_DEFLECTION);
     assert_true(abs(p->black_db) <= LM_WINDOW_MAX_DB && abs(p->white_db) <= LM_WINDOW_MAX_DB);
     assert_true(abs(p->gamma_tenths) <= LM_GAMMA_MAX);
