@@ -40,6 +40,32 @@ int db_class_raster_create(struct db_raster_out *out, const char *path, const st
     return 0;
 }
 
+void db_class_raster_attributes(struct db_raster_out *out, const struct db_class_table *table,
+                                const uint64_t *pixels, const double *area_km2)
+{
+    enum { NUMBER, NAME, PIXELS, AREA, RED, GREEN, BLUE };
+    const GDALRasterAttributeTableH t = GDALCreateRasterAttributeTable();
+    GDALRATCreateColumn(t, "Value", GFT_Integer, GFU_MinMax);
+    GDALRATCreateColumn(t, "Class", GFT_String, GFU_Name);
+    GDALRATCreateColumn(t, "Count", GFT_Real, GFU_PixelCount);
+    GDALRATCreateColumn(t, "Area_km2", GFT_Real, GFU_Generic);
+    GDALRATCreateColumn(t, "Red", GFT_Integer, GFU_Red);
+    GDALRATCreateColumn(t, "Green", GFT_Integer, GFU_Green);
+    GDALRATCreateColumn(t, "Blue", GFT_Integer, GFU_Blue);
+    for (int i = 0; i < table->count; i++) {
+        const struct db_class *c = &table->items[i];
+        GDALRATSetValueAsInt(t, i, NUMBER, i);
+        GDALRATSetValueAsString(t, i, NAME, c->name);
+        GDALRATSetValueAsDouble(t, i, PIXELS, (double)pixels[i]);
+        GDALRATSetValueAsDouble(t, i, AREA, area_km2[i]);
+        for (int k = 0; k < 3; k++) {
+            GDALRATSetValueAsInt(t, i, RED + k, c->colour[k]);
+        }
+    }
+    GDALSetDefaultRAT(GDALGetRasterBand(out->dataset, 1), t);
+    GDALDestroyRasterAttributeTable(t);
+}
+
 int db_class_raster_open(struct db_raster *r, struct db_class_numbers *numbers, const char *path,
                          const struct db_class_table *table, bool ignores_names)
 {

@@ -352,22 +352,73 @@ static int rename_side_file(const struct db_raster_out *out)
     return result;
 }
 
-int db_raster_commit(struct db_raster_out *out)
+static void drop_temporary(struct db_raster_out *out)
 {
-    /* GDALClose of this version returns nothing: a full disk shows only as a complaint. */
+    char *side = side_name(out->temporary);
+    hs_atomic_drop(out->temporary);
+    if (side) {
+        hs_atomic_drop(side);
+    }
+    free(side);
+    free(out->temporary);
+    out->temporary = NULL;
+}
+
+/* GDALClose of this version returns nothing: a full disk shows only as a complaint. */
+static int finish(struct db_raster_out *out)
+{
     CPLErrorReset();
     GDALClose(out->dataset);
     out->dataset = NULL;
-    if (CPLGetLastErrorType() >= CE_Failure) {
-        hs_error(out->path, "free some space and run again", "cannot be written: %s",
-                 db_gdal_complaint());
-        db_raster_abort(out);
-        return -1;
+    return CPLGetLastErrorType() < CE_Failure
+               ? 0
+               : hs_error(out->path, "free some space and run again", "cannot be written: %s",
+                          db_gdal_complaint());
+}
+
+static int put_in_place(struct db_raster_out *out)
+{
+    const int result = rename_side_file(out);
+    return result == 0 ? hs_atomic_rename(out->temporary, out->path) : result;
+}
+
+/* A copy of the dataset under another temporary name, which takes the place of the first. */
+static int copy_as_cog(struct db_raster_out *out, const char *resampling)
+{
+    char *name = NULL, **options = NULL;
+    char *copy = asprintf(&name, "%s.cog", out->path) < 0 ? NULL : hs_atomic_temporary_name(name);
+    options = CSLSetNameValue(options, "COMPRESS", "DEFLATE");
+    options = CSLSetNameValue(options, "BLOCKSIZE", "256");
+    options = CSLSetNameValue(options, "BIGTIFF", "IF_SAFER");
+    options = CSLSetNameValue(options, "RESAMPLING", resampling);
+    const GDALDatasetH from = GDALOpen(out->temporary, GA_ReadOnly);
+    if (copy && from) {
+        out->dataset =
+            GDALCreateCopy(GDALGetDriverByName("COG"), copy, from, 0, options, NULL, NULL);
     }
-    int result = rename_side_file(out);
-    if (result == 0) {
-        result = hs_atomic_rename(out->temporary, out->path);
+    if (from) {
+        GDALClose(from);
     }
+    CSLDestroy(options);
+    free(name);
+    drop_temporary(out);
+    out->temporary = copy;
+    return out->dataset ? finish(out)
+                        : hs_error(out->path, "free some space and run again",
+                                   "cannot be written: %s", db_gdal_complaint());
+}
+
+int db_raster_commit(struct db_raster_out *out)
+{
+    const int result = finish(out) == 0 ? put_in_place(out) : -1;
+    db_raster_abort(out);
+    return result;
+}
+
+int db_raster_commit_cog(struct db_raster_out *out, const char *resampling)
+{
+    const int result =
+        finish(out) == 0 && copy_as_cog(out, resampling) == 0 ? put_in_place(out) : -1;
     db_raster_abort(out);
     return result;
 }
@@ -378,14 +429,8 @@ void db_raster_abort(struct db_raster_out *out)
         GDALClose(out->dataset);
     }
     if (out->temporary) {
-        char *side = side_name(out->temporary);
-        hs_atomic_drop(out->temporary);
-        if (side) {
-            hs_atomic_drop(side);
-        }
-        free(side);
+        drop_temporary(out);
     }
     free(out->path);
-    free(out->temporary);
     *out = (struct db_raster_out){0};
 }

@@ -27,9 +27,10 @@ static const struct hs_usage usage = {
         "Writes class.tif, reflectivity.tif, elevation.tif and height.tif (of structures and "
         "trees) "
         "into a folder:\n"
-        "tiled and compressed, in WGS-84, a pixel a cell of the level, with units, nodata and, of "
-        "the classes,\n"
-        "colours and names. A style beside each (.qml) lets QGIS show it as it should; planes.qgs "
+        "cloud-optimised, with overviews, in WGS-84, a pixel a cell of the level, with units, "
+        "nodata and,\n"
+        "of the classes, colours, names and a table of their areas. A style beside each (.qml) "
+        "lets QGIS show it as it should; planes.qgs "
         "is a project\n"
         "of all four. Where the level has no tile the next coarser one shows through.\n\n"
         "Example:\n"
@@ -58,15 +59,17 @@ static bool read_settings(struct settings *s, int argc, char **argv, const char 
 struct plane {
     enum image_plane plane;
     const char *unit;
-    double low, high; /* black and white of the style */
+    double low, high;       /* black and white of the style */
+    const char *resampling; /* of overviews */
 };
 
-/* In dB and metres; a style's range of heights is set from what is there. */
+/* In dB and metres; a style's range of heights is set from what is there. A mean of classes or of
+ * dB is none of the ground. */
 static const struct plane planes[PLANES] = {
-    {IMAGE_PLANE_CLASS, "", 0, 0},
-    {IMAGE_PLANE_REFLECTIVITY, "dB", -45, 5},
-    {IMAGE_PLANE_ELEVATION, "m", 0, 0},
-    {IMAGE_PLANE_HEIGHT, "m", 0, 30},
+    {IMAGE_PLANE_CLASS, "", 0, 0, "NEAREST"},
+    {IMAGE_PLANE_REFLECTIVITY, "dB", -45, 5, "NEAREST"},
+    {IMAGE_PLANE_ELEVATION, "m", 0, 0, "AVERAGE"},
+    {IMAGE_PLANE_HEIGHT, "m", 0, 30, "AVERAGE"},
 };
 
 struct work {
@@ -77,6 +80,8 @@ struct work {
     struct db_class_table table;
     struct db_qgis_layer layers[PLANES];
     char sources[PLANES][32], ids[PLANES][32];
+    uint64_t pixels[DB_CLASS_NODATA + 1]; /* by class */
+    double area_km2[DB_CLASS_NODATA + 1];
     float *values;  /* owned; a strip */
     uint8_t *bytes; /* owned; likewise */
 };
@@ -143,6 +148,31 @@ static int create(struct work *w, const struct plane *plane, struct db_raster_ou
     return 0;
 }
 
+/* Area of a pixel of row y on the ellipsoid of WGS-84: sides along the meridian and the parallel by
+ * its radii of curvature. */
+static double pixel_km2(const struct db_grid *grid, int y)
+{
+    const double degree = 3.14159265358979323846 / 180, a_km = 6378.137, e2 = 0.00669437999014;
+    const double *g = grid->geotransform;
+    const double latitude = (g[3] + (y + 0.5) * g[5]) * degree;
+    const double w2 = 1 - e2 * sin(latitude) * sin(latitude);
+    const double north_km = a_km * (1 - e2) / (w2 * sqrt(w2)) * fabs(g[5]) * degree;
+    const double east_km = a_km / sqrt(w2) * cos(latitude) * g[1] * degree;
+    return north_km * east_km;
+}
+
+static void count_classes(struct work *w, int y, int rows)
+{
+    for (int row = 0; row < rows; row++) {
+        const uint8_t *classes = w->bytes + (size_t)row * (size_t)w->view.width;
+        const double area_km2 = pixel_km2(&w->grid, y + row);
+        for (int x = 0; x < w->view.width; x++) {
+            w->pixels[classes[x]]++;
+            w->area_km2[classes[x]] += area_km2;
+        }
+    }
+}
+
 static int write_strip(struct work *w, const struct plane *plane, struct db_raster_out *out, int y,
                        struct db_qgis_layer *layer)
 {
@@ -161,8 +191,11 @@ static int write_strip(struct work *w, const struct plane *plane, struct db_rast
         }
         w->values[i] = is_there ? w->values[i] : (float)no_data;
     }
-    return plane->plane == IMAGE_PLANE_CLASS ? db_raster_write(out, y, rows, w->bytes)
-                                             : db_raster_write(out, y, rows, w->values);
+    if (plane->plane != IMAGE_PLANE_CLASS) {
+        return db_raster_write(out, y, rows, w->values);
+    }
+    count_classes(w, y, rows);
+    return db_raster_write(out, y, rows, w->bytes);
 }
 
 static int write_raster(struct work *w, const struct plane *plane, const char *path,
@@ -182,7 +215,10 @@ static int write_raster(struct work *w, const struct plane *plane, const char *p
     }
     hs_progress_end(&progress);
     if (result == 0) {
-        return db_raster_commit(&out);
+        if (plane->plane == IMAGE_PLANE_CLASS) {
+            db_class_raster_attributes(&out, &w->table, w->pixels, w->area_km2);
+        }
+        return db_raster_commit_cog(&out, plane->resampling);
     }
     db_raster_abort(&out);
     return -1;

@@ -13,6 +13,11 @@
 int db_class_raster_create(struct db_raster_out *out, const char *path, const struct db_grid *grid,
                            const struct db_class_table *table);
 
+/* Give one that is being written an attribute table: number, name, pixels, area and colour of each
+ * class. `area_km2` and `pixels` are by class. Call before the commit. */
+void db_class_raster_attributes(struct db_raster_out *out, const struct db_class_table *table,
+                                const uint64_t *pixels, const double *area_km2);
+
 /* Open one for reading, and read which class its numbers are (gis/class_numbers.h). Returns 0, or
  * -1 with the error reported and nothing to close: it cannot be opened, has not one band, or its
  * classes are not those of the table. */

@@ -102,6 +102,11 @@ int db_raster_write_band(struct db_raster_out *out, int number, int y, int rows,
 /* Put the file in place. Returns 0, or -1 with the error reported and nothing left. */
 int db_raster_commit(struct db_raster_out *out);
 
+/* The same as a cloud-optimised GeoTIFF: tiles and overviews in the order in which readers fetch
+ * them. `resampling` is GDAL's word for how overviews are made, NEAREST or AVERAGE. Needs room for
+ * the file twice. */
+int db_raster_commit_cog(struct db_raster_out *out, const char *resampling);
+
 /* Forget the file. Harmless after a commit or a failed create. */
 void db_raster_abort(struct db_raster_out *out);
 

@@ -9,6 +9,8 @@
 
 #include <cpl_conv.h>
 #include <cpl_minixml.h>
+#include <gdal.h>
+#include <geodesic.h>
 #include <math.h>
 #include <ogr_api.h>
 #include <ogr_srs_api.h>
@@ -153,6 +155,113 @@ TEST(colours_and_names_of_the_classes_are_in_the_raster_and_its_style)
         assert_int_equal(atoi(CPLGetXMLValue(entry, "value", "")), i);
     }
     CPLDestroyXMLNode(style);
+    GDALClose(o.file);
+}
+
+/* Every value of an overview of the classes is one that the full raster has there or beside. */
+static void check_overview(const struct opened *o)
+{
+    const GDALRasterBandH overview = GDALGetOverview(o->band, 0);
+    const int width = GDALGetRasterBandXSize(overview), height = GDALGetRasterBandYSize(overview);
+    uint8_t *small = malloc((size_t)width * (size_t)height);
+    float *whole = read_plane(o);
+    assert_non_null(small);
+    assert_int_equal(
+        GDALRasterIO(overview, GF_Read, 0, 0, width, height, small, width, height, GDT_Byte, 0, 0),
+        CE_None);
+    const double across = (double)o->width / width, down = (double)o->height / height;
+    long odd = 0;
+    for (int i = 0; i < width * height; i++) {
+        const int x = (int)(across * (i % width)), y = (int)(down * (i / width));
+        bool is_there = false;
+        for (int k = 0; k < 9; k++) {
+            const int c = x + k % 3, r = y + k / 3;
+            is_there =
+                is_there || (c < o->width && r < o->height &&
+                             (int)whole[(size_t)r * (size_t)o->width + (size_t)c] == small[i]);
+        }
+        odd += !is_there;
+    }
+    assert_int_equal(odd, 0);
+    free(small);
+    free(whole);
+}
+
+TEST(planes_are_cloud_optimised_with_overviews)
+{
+    static const char *const names[] = {"class", "reflectivity", "elevation", "height"};
+    build_image();
+    assert_int_equal(scene_run("export %s --out %s", scene_path("a.lmdb"), scene_path("planes")),
+                     0);
+    for (int i = 0; i < 4; i++) {
+        char name[64];
+        snprintf(name, sizeof name, "planes/%s.tif", names[i]);
+        const struct opened o = open_plane(name);
+        const char *layout = GDALGetMetadataItem(o.file, "LAYOUT", "IMAGE_STRUCTURE");
+        assert_true(layout && strcmp(layout, "COG") == 0);
+        assert_true(o.width > 256 && GDALGetOverviewCount(o.band) > 0);
+        if (i == 0) {
+            check_overview(&o);
+        }
+        GDALClose(o.file);
+    }
+    assert_int_equal(
+        support_run("ls %s | grep -E 'cog|tmp|~' && exit 1; exit 0", scene_path("planes")), 0);
+}
+
+/* Area between two parallels and two meridians by PROJ's geodesics; meridians are geodesics, and
+ * the parallels are cut into many short ones. */
+static double area_of_km2(const struct opened *o)
+{
+    struct geod_geodesic earth;
+    struct geod_polygon outline;
+    geod_init(&earth, 6378137.0, 1 / 298.257223563);
+    geod_polygon_init(&outline, 0);
+    const double east = o->g[0] + o->width * o->g[1], south = o->g[3] + o->height * o->g[5];
+    for (int i = 0; i <= 1000; i++) {
+        geod_polygon_addpoint(&earth, &outline, south, o->g[0] + (east - o->g[0]) * i / 1000);
+    }
+    for (int i = 1000; i >= 0; i--) {
+        geod_polygon_addpoint(&earth, &outline, o->g[3], o->g[0] + (east - o->g[0]) * i / 1000);
+    }
+    double area_m2;
+    geod_polygon_compute(&earth, &outline, 0, 1, &area_m2, NULL);
+    return area_m2 / 1e6;
+}
+
+TEST(the_attribute_table_has_names_colours_counts_and_areas)
+{
+    build_image();
+    assert_int_equal(scene_run("export %s --out %s", scene_path("a.lmdb"), scene_path("planes")),
+                     0);
+    const struct opened o = open_plane("planes/class.tif");
+    const GDALRasterAttributeTableH t = GDALGetDefaultRAT(o.band);
+    char **categories = GDALGetRasterCategoryNames(o.band);
+    assert_non_null(t);
+    const int name = GDALRATGetColOfUsage(t, GFU_Name),
+              count = GDALRATGetColOfUsage(t, GFU_PixelCount);
+    const int red = GDALRATGetColOfUsage(t, GFU_Red);
+    assert_true(name >= 0 && count >= 0 && red >= 0);
+    assert_string_equal(GDALRATGetNameOfCol(t, count + 1), "Area_km2");
+    float *values = read_plane(&o);
+    double seen = 0, area_km2 = 0;
+    for (int row = 0; row < GDALRATGetRowCount(t); row++) {
+        long pixels = 0;
+        for (int i = 0; i < o.width * o.height; i++) {
+            pixels += (int)values[i] == row;
+        }
+        const GDALColorEntry *c = GDALGetColorEntry(GDALGetRasterColorTable(o.band), row);
+        assert_string_equal(GDALRATGetValueAsString(t, row, name), categories[row]);
+        assert_int_equal((long)GDALRATGetValueAsDouble(t, row, count), pixels);
+        assert_int_equal(GDALRATGetValueAsInt(t, row, red), c->c1);
+        seen += (double)pixels;
+        area_km2 += GDALRATGetValueAsDouble(t, row, count + 1);
+    }
+    const double share = seen / ((double)o.width * o.height);
+    assert_true(share > 0.3);
+    /* Classes lie evenly enough that their share of the area is that of the pixels. */
+    assert_true(fabs(area_km2 / (share * area_of_km2(&o)) - 1) < 1e-3);
+    free(values);
     GDALClose(o.file);
 }
 
