@@ -161,8 +161,15 @@ static void set_axes(struct lm_detail_shape *shape, const struct lm_detail_item 
     const int64_t reach_q8 = lm_cells_q8_of_m_q8((aside_m_q8 << 14) / wide_q14, cell_m_q8);
     const int64_t first = (shape->line_q8 - reach_q8 + 255) >> 8,
                   end = ((shape->line_q8 + reach_q8) >> 8) + 1;
+    /* They reach a |cos t| + b |sin t| beyond. Rounding adds less than a 16th and two cells. */
+    const int64_t beyond_m_q8 = (a_m_q8 * (int64_t)fx_abs_u32((int32_t)cosine_q14) +
+                                 b_m_q8 * (int64_t)fx_abs_u32((int32_t)sine_q14)) >>
+                                14;
+    const int64_t along_q8 = lm_cells_q8_of_m_q8(beyond_m_q8 * 17 / 16, cell_m_q8) + 512;
+    const bool is_traced = shape->cell_q8 + along_q8 >= 0 &&
+                           shape->cell_q8 - along_q8 <= lm_cells_q8_of_cells((int32_t)g->traced);
     shape->first_line = (uint16_t)fx_clamp_i64(first, 0, g->lines);
-    shape->end_line = (uint16_t)fx_clamp_i64(end, 0, g->lines);
+    shape->end_line = (uint16_t)fx_clamp_i64(is_traced ? end : 0, 0, g->lines);
 }
 
 static struct lm_detail_shape shape_of(const struct lm_detail_item *item, const struct place *place,

@@ -255,6 +255,7 @@ static void set_geometry(struct lm_sar *s)
         .cells = s->radar->sar.cells + LM_SAR_GUARD,
         .guard = LM_SAR_GUARD,
         .overscan = s->overscan,
+        .traced = s->traced,
         .first = fx_max_u32(s->grid.first, LM_SAR_GUARD + s->overscan) - s->overscan,
         .heights = {s->grid.height_m_q10, s->grid.reference_m_q10},
         .wavelength_um = s->radar->wavelength_um,

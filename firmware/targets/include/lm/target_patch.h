@@ -46,6 +46,7 @@ struct lm_patch_geometry {
     uint32_t cell_m_q8, lines, cells;
     uint32_t guard;    /* number of the cells that lie before the patch */
     uint32_t overscan; /* cells that are traced before those, and not counted here */
+    uint32_t traced;   /* all that are traced: overscan, guard, patch, overscan behind it */
     uint32_t first;    /* cells before this one are not displayed */
     struct lm_target_heights heights;
     uint32_t wavelength_um;

@@ -80,6 +80,7 @@ static struct scene scene_at(double latitude, double look_deg, double range_m, d
                                      .cell_m_q8 = (uint32_t)lround(cell_m * 256),
                                      .lines = s.lines,
                                      .cells = CELLS + GUARD,
+                                     .traced = CELLS + GUARD,
                                      .guard = GUARD};
     lm_detail_patch_clear(&patch, &map.db);
     return s;
