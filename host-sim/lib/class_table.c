@@ -321,14 +321,11 @@ static int choose_of_class(struct db_class *c, const char *path, enum hs_sensor 
     for (int i = 0; i < sensor_keys[sensor].count; i++) {
         const int key = (int)sensor_keys[sensor].first + i;
         if (!c->has_key[key]) {
-            char place[512], remedy[160];
+            char place[512];
             snprintf(place, sizeof place, "%s:%d", path, c->line);
-            snprintf(remedy, sizeof remedy,
-                     "add `%s = ` and %s (host-sim/programs/db/classes/heaton6.classes has it), or "
-                     "choose another sensor",
-                     key_names[key], number_keys[key].expected);
-            return hs_error(place, remedy, "class [%s] has no `%s`, which %s needs", c->name,
-                            key_names[key], hs_sensor_title(sensor));
+            return hs_error(place, "add it as in heaton6.classes; see docs/classifier.md",
+                            "class [%s] has no `%s`, which %s needs", c->name, key_names[key],
+                            hs_sensor_title(sensor));
         }
     }
     const struct db_levels *l = &c->levels[sensor];

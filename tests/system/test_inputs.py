@@ -600,6 +600,33 @@ def radar_hole():
     return db(*radar("hole.tif", plane), "--radar-unit", "db")
 
 
+# ---- Sensors.
+
+@row("class table of X alone, `--sensor ku`", "reflect", "refused")
+def table_of_x():
+    with open(TABLE) as table, open("x.classes", "w") as out:
+        out.writelines(line for line in table if not re.match("ku_db|ka_db|mmw_db|emissivity|albedo", line))
+    return db("reflect", "--class-raster", "classes.tif", "--classes", "x.classes", "--out", "ku.tif", "--sensor", "ku")
+
+
+@row("class table of X alone", "infrared", "refused")
+def table_without_infrared():
+    table_of_x()
+    return db("infrared", "--class-raster", "classes.tif", "--classes", "x.classes", "--out", "thermal")
+
+
+@row("class raster without a CRS", "infrared", "refused")
+def infrared_nowhere():
+    raster("nowhere.tif", [numpy.zeros((SIDE, SIDE))], gdal.GDT_Byte, system=None, names=CLASSES)
+    return db("infrared", "--class-raster", "nowhere.tif", "--classes", TABLE, "--out", "thermal")
+
+
+@row("reflectivity for another sensor than `--sensor`", "build", "refused")
+def other_sensor():
+    db(*REFLECT, "--out", "ka.tif", "--sensor", "ka")
+    return db(*BUILD_AREA, "--reflectivity", "ka.tif", "--sensor", "x", "--out", "other.lmdb")
+
+
 # ---- Inputs that are something else.
 
 def trusted(words):
