@@ -317,10 +317,10 @@ static int write_picture(const struct work *w, const struct shot *s, double hour
     int result = path_of(w, path, hour, "png") != 0 || db_preview_paint_stretched(p, rgb, 0, 1) != 0
                      ? -1
                      : 0;
-    for (size_t i = 0; i < (size_t)p->width * (size_t)p->height; i++) {
-        rgb[i] = rgb[3 * i];
-    }
     if (result == 0) {
+        for (size_t i = 0; i < (size_t)p->width * (size_t)p->height; i++) {
+            rgb[i] = rgb[3 * i];
+        }
         result = hs_png_write_grey(path, rgb, p->width, p->height, (size_t)p->width);
     }
     free(rgb);
