@@ -50,11 +50,11 @@ static void report_refusal(struct bench *b, const struct lm_radar *radar, int st
     }
 }
 
-int bench_open(struct bench *b, const char *database, const struct bench_glass *glass,
+int bench_open(struct bench *b, const struct bench_scene *scene, const struct bench_glass *glass,
                uint32_t noise_seed, const struct bench_bus *bus, const struct lm_controls *controls)
 {
     memset(b, 0, sizeof *b);
-    const int cause = drv_flash_file_open(&b->flash, database);
+    const int cause = drv_flash_file_open(&b->flash, scene->database);
     if (cause != 0) {
         snprintf(b->error, sizeof b->error, "cannot be opened: %s", strerror(cause));
         return -1;
@@ -64,7 +64,8 @@ int bench_open(struct bench *b, const char *database, const struct bench_glass *
                                      .height_px = glass->height_px,
                                      .acquire = acquire,
                                      .present = present};
-    b->board = (struct lm_board){.flash = &b->flash.port,
+    b->board = (struct lm_board){.radar = scene->radar,
+                                 .flash = &b->flash.port,
                                  .can = bus->can,
                                  .bus_profile = bus->profile,
                                  .bus_node = bus->node,

@@ -26,17 +26,23 @@ struct bench_bus {
     bool tells_reports;                   /* it tells lm/canas_report.h as that node */
 };
 
+/* What the unit looks at, and with. */
+struct bench_scene {
+    const char *database;         /* a file */
+    const struct lm_radar *radar; /* borrowed; NULL: the image's, or the built-in one */
+};
+
 /* Display of the unit. */
 struct bench_glass {
     uint16_t width_px, height_px;
     struct lm_glass_options options;
 };
 
-/* Open the database, a file, and initialise the unit, which is then ready for lm_unit_step. The
- * ports in `bus`, and `controls`, stay borrowed until bench_close. Returns 0; or -1, with the cause
+/* Open the database and initialise the unit, which is then ready for lm_unit_step. Radar, the ports
+ * in `bus`, and `controls`, stay borrowed until bench_close. Returns 0; or -1, with the cause
  * in b->error and nothing open. A database that the firmware cannot use is no error: the unit runs,
  * the glass shows it, and unit->map.is_usable is false. */
-int bench_open(struct bench *b, const char *database, const struct bench_glass *glass,
+int bench_open(struct bench *b, const struct bench_scene *scene, const struct bench_glass *glass,
                uint32_t noise_seed, const struct bench_bus *bus,
                const struct lm_controls *controls);
 

@@ -290,6 +290,9 @@ static int finish(struct image_writer *w, const char *manifest)
     if (result == 0) {
         result = put_extra(w, LM_IMAGE_DETAIL, &w->detail, stream, &end);
     }
+    if (result == 0) {
+        result = put_extra(w, LM_IMAGE_RADAR, &w->radar, stream, &end);
+    }
     if (fclose(stream) != 0) {
         result = hs_error(w->file.path, NULL, "out of memory");
     }

@@ -5,7 +5,7 @@ set -eu
 bin=$1 out=$2
 here=$(dirname "$0")
 top=$here/../..
-tools='bus db nav netem realradar reference scene sim target'
+tools='bus db nav netem radar realradar reference scene sim target'
 arch=$(dpkg --print-architecture)
 version=$("$bin/landmass-db" --version | sed 's/.* //')
 # The package is reproducible: its times are those of the last commit.
@@ -34,7 +34,7 @@ for tool in $tools; do
     [ "$tool" = db ] || ln -s landmass-db "$completions/landmass-$tool"
 done
 mkdir -p "$root/usr/share/landmass"
-install -m 644 "$top"/host-sim/programs/db/classes/* "$root/usr/share/landmass"
+install -m 644 "$top"/host-sim/programs/db/classes/* "$top"/host-sim/programs/radar/tables/* "$root/usr/share/landmass"
 mkdir -p "$doc/docs"
 install -m 644 "$top"/docs/*.md "$doc/docs"
 gzip -9nc "$top/CHANGELOG.md" >"$doc/CHANGELOG.md.gz"

@@ -11,7 +11,9 @@
 #include "hs/options.h"
 #include "hs/report.h"
 #include "image/codes.h"
+#include "lm/radar_record.h"
 #include "lm/sensor.h"
+#include "radar/text.h"
 
 #include <inttypes.h>
 #include <math.h>
@@ -21,7 +23,7 @@
 #include <time.h>
 
 struct settings {
-    const char *classes, *class_raster, *reflectivity, *heights, *targets, *detail;
+    const char *classes, *radar, *class_raster, *reflectivity, *heights, *targets, *detail;
     const char *map, *unknown_codes, *terrain_unit, *terrain_datum, *geoid_grid;
     struct hs_list terrain;
     double cell_m;
@@ -86,9 +88,12 @@ static bool read_settings(struct settings *s, int argc, char **argv, int *exit_c
         OPTION("reflectivity", HS_INPUT, reflectivity, 0, 0, "FILE",
                "reflectivity (gamma, dB) on the class raster's grid; left out: drawn from "
                "the class's distribution"),
+        OPTION("radar", HS_INPUT, radar, 0, 0, "FILE",
+               "table of the radar that shall look at the image, a text (landmass-radar)\nleft "
+               "out: the display uses its own"),
         OPTION("sensor", HS_CHOICE, sensor, 0, 0, HS_SENSOR_WORDS,
                "what the image is for: a radar of that band, or the infrared\nleft out: what the "
-               "reflectivity was made for, or x"),
+               "reflectivity was made for, or the band of --radar, or x"),
         OPTION(
             "heights", HS_INPUT, heights, 0, 0, "FILE",
             "metres of structures and trees above the terrain; left out: the class table's height"),
@@ -248,10 +253,13 @@ _Static_assert((int)HS_SENSOR_X == LM_SENSOR_X && (int)HS_SENSOR_KU == LM_SENSOR
                    (int)HS_SENSOR_IR == LM_SENSOR_IR && (int)HS_SENSOR_COUNT == LM_SENSORS,
                "the header's numbers are those of the host");
 
-/* The sensor of the reflectivity raster, the one that was asked for, or X. */
-static int choose_sensor(const struct settings *s, enum hs_sensor *sensor)
+/* The sensor of the reflectivity raster, the one that was asked for, the radar's, or X. */
+static int choose_sensor(const struct settings *s, const struct lm_radar *radar,
+                         enum hs_sensor *sensor)
 {
-    const enum hs_sensor asked = s->sensor < 0 ? HS_SENSOR_X : (enum hs_sensor)s->sensor;
+    const enum hs_sensor asked = s->sensor >= 0 ? (enum hs_sensor)s->sensor
+                                 : s->radar     ? (enum hs_sensor)radar->sensor
+                                                : HS_SENSOR_X;
     *sensor = asked;
     const int is_untagged = s->reflectivity ? db_sensor_tag_read(s->reflectivity, sensor) : 0;
     if (is_untagged < 0) {
@@ -262,7 +270,12 @@ static int choose_sensor(const struct settings *s, enum hs_sensor *sensor)
                         "is for %s, and --sensor asks for %s", hs_sensor_title(*sensor),
                         hs_sensor_title(asked));
     }
-    const bool is_assumed = s->sensor < 0 && (is_untagged || !s->reflectivity);
+    if (s->radar && (int)*sensor != radar->sensor) {
+        return hs_error(s->radar, "give a radar of that band, or other reflectivity",
+                        "is a radar of %s, and the image is for %s",
+                        hs_sensor_title((enum hs_sensor)radar->sensor), hs_sensor_title(*sensor));
+    }
+    const bool is_assumed = s->sensor < 0 && (is_untagged || (!s->reflectivity && !s->radar));
     printf("sensor: %s%s\n", hs_sensor_title(*sensor),
            is_assumed ? " (assumed; no tag " DB_SENSOR_ITEM " and no --sensor says another)" : "");
     return 0;
@@ -270,7 +283,8 @@ static int choose_sensor(const struct settings *s, enum hs_sensor *sensor)
 
 static int read_table(struct build_context *b, const struct settings *s)
 {
-    if (choose_sensor(s, &b->sensor) != 0 || db_class_table_read(&b->table, s->classes) != 0 ||
+    if (choose_sensor(s, &b->radar, &b->sensor) != 0 ||
+        db_class_table_read(&b->table, s->classes) != 0 ||
         db_class_table_choose(&b->table, s->classes, b->sensor) != 0) {
         return -1;
     }
@@ -478,7 +492,7 @@ static int make_geoid(struct build_context *b, const struct settings *s)
 
 static int open_inputs(struct build_context *b, const struct settings *s)
 {
-    if (read_table(b, s) != 0 ||
+    if ((s->radar && radar_text_read(&b->radar, s->radar) != 0) || read_table(b, s) != 0 ||
         resample_cover_open(&b->cover, &b->table, s->class_raster, s->reflectivity, s->heights) !=
             0 ||
         resample_cover_judge(&b->cover, s->trusts_inputs) != 0 || read_codes(b, s) != 0 ||
@@ -582,6 +596,9 @@ static int write_inputs(FILE *out, const struct build_context *b, const struct s
     }
     if (result == 0 && s->detail) {
         result = build_manifest_file(out, "detail", s->detail);
+    }
+    if (result == 0 && s->radar) {
+        result = build_manifest_file(out, "radar", s->radar);
     }
     if (result == 0 && s->geoid_grid) {
         result = strcmp(s->geoid_grid, "egm96") == 0
@@ -719,6 +736,9 @@ static int write_image(struct build_context *b, const struct settings *s, const 
     w.geoid = (struct image_bytes){b->geoid.rows > 0 ? &b->geoid : NULL, sizeof b->geoid};
     w.detail = (struct image_bytes){b->detail.section_bytes ? b->detail.section : NULL,
                                     b->detail.section_bytes};
+    uint8_t radar[LM_RADAR_RECORD_BYTES];
+    lm_radar_pack(&b->radar, radar);
+    w.radar = (struct image_bytes){s->radar ? radar : NULL, sizeof radar};
     char *whole = NULL;
     if (asprintf(&whole, "%sheights-cut: %" PRIu64 "\n", manifest, b->counts.heights_cut) < 0) {
         image_writer_abort(&w);

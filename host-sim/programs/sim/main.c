@@ -12,6 +12,7 @@
 #include "hs/report.h"
 #include "lm/bus_filters.h"
 #include "lm/sensor.h"
+#include "radar/text.h"
 #include "sim/bezel.h"
 #include "sim/hands.h"
 #include "sim/script.h"
@@ -29,6 +30,7 @@ enum { STEP_US = 2000, MALFORMED_SHOWN = 5 };
 
 struct sim {
     struct options options;
+    struct lm_radar radar; /* of --radar */
     struct script script;
     struct bench bench;
     FILE *log_file;
@@ -302,6 +304,23 @@ static int open_bezel(struct sim *s)
     return 0;
 }
 
+/* The unit runs without a database, too. */
+static void warn_of_database(const struct sim *s)
+{
+    const char *const path = s->options.database;
+    const struct lm_unit_map *map = &s->bench.unit->map;
+    if (map->open_status == LM_ERR_VERSION) {
+        hs_warn(path, "`landmass-db convert OLD NEW` makes a new image of an old one",
+                "is a flash image of another version");
+    } else if (map->open_status == LM_ERR_SENSOR) {
+        hs_warn(path, "build it for this radar, or name its own with --radar",
+                "its reflectivity is of band %s, the radar's is %s", lm_sensor_word(map->db.sensor),
+                lm_sensor_word(map->radar->sensor));
+    } else if (!map->is_usable) {
+        hs_warn(path, "landmass-db verify tells what is wrong", "is no usable flash image");
+    }
+}
+
 static int run(struct sim *s)
 {
     const struct options *o = &s->options;
@@ -309,28 +328,19 @@ static int run(struct sim *s)
         return hs_error(o->png_folder, "check the folder above it", "cannot be made: %s",
                         strerror(errno));
     }
-    if (script_read(&s->script, o->script, &lm_radar_default) != 0 || open_bus(s) != 0 ||
+    if ((o->radar && radar_text_read(&s->radar, o->radar) != 0) || open_bus(s) != 0 ||
         open_sent_log(s) != 0) {
         return -1;
     }
     hands_init(&s->hands, &s->script.port);
     const struct bench_bus bus = {&s->can, o->profile, o->node, o->tells_reports};
     const struct bench_glass glass = {o->width_px, o->height_px, o->glass};
-    if (bench_open(&s->bench, o->database, &glass, o->seed, &bus, &s->hands.port) != 0) {
+    const struct bench_scene scene = {o->database, o->radar ? &s->radar : NULL};
+    if (bench_open(&s->bench, &scene, &glass, o->seed, &bus, &s->hands.port) != 0) {
         return hs_error(o->database, "landmass-db build makes a database", "%s", s->bench.error);
     }
-    if (s->bench.unit->map.open_status == LM_ERR_VERSION) {
-        hs_warn(o->database, "`landmass-db convert OLD NEW` makes a new image of an old one",
-                "is a flash image of another version");
-    } else if (s->bench.unit->map.open_status == LM_ERR_SENSOR) {
-        hs_warn(o->database, "build it for this radar",
-                "its reflectivity is of band %s, the radar's is %s",
-                lm_sensor_word(s->bench.unit->map.db.sensor),
-                lm_sensor_word(s->bench.unit->map.radar->sensor));
-    } else if (!s->bench.unit->map.is_usable) {
-        hs_warn(o->database, "landmass-db verify tells what is wrong", "is no usable flash image");
-    }
-    if (open_bezel(s) != 0) {
+    warn_of_database(s);
+    if (script_read(&s->script, o->script, s->bench.unit->map.radar) != 0 || open_bezel(s) != 0) {
         bench_close(&s->bench);
         return -1;
     }

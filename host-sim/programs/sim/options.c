@@ -128,6 +128,10 @@ static bool read_table(struct options *o, struct raw *raw, int argc, char **argv
          false},
         {"seconds", HS_REAL, &raw->seconds, 0.001, 999999, "S",
          "flight time to run; left out: to the end of the log", false},
+        {"radar", HS_INPUT, &o->radar, 0, 0, "FILE",
+         "table of the radar, a text (landmass-radar); left out: the database's, or the built-in "
+         "one",
+         false},
         {"seed", HS_INTEGER, &raw->seed, 0, 0x7fffffff, "N",
          "another speckle; the same inputs and seed give the same pictures", false},
         {"quiet", HS_FLAG, &o->is_quiet, 0, 0, NULL, "no summary", false},

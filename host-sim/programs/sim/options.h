@@ -9,7 +9,7 @@
 #include <stdint.h>
 
 struct options {
-    const char *database, *bus_log, *can_interface, *bus_out, *script, *png_folder;
+    const char *database, *radar, *bus_log, *can_interface, *bus_out, *script, *png_folder;
     double start_s; /* into the bus log */
     double seconds; /* 0: to the end of the bus log, or for ever */
     uint32_t every; /* of the pictures for --png; 0: only those the script asks for */

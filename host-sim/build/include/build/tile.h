@@ -9,6 +9,7 @@
 #include "hs/class_table.h"
 #include "image/ground.h"
 #include "lm/db.h"
+#include "lm/radar.h"
 #include "reflectivity/reflect.h"
 #include "resample/cover.h"
 #include "terrain/surface.h"
@@ -36,6 +37,7 @@ struct build_context {
     struct resample_cover cover;
     struct terrain terrain;
     enum hs_sensor sensor; /* that the reflectivities are for */
+    struct lm_radar radar; /* that shall look at the image; all zero: any of that band */
     struct db_class_table table;
     struct db_code_map codes;                 /* of the class raster, when it is a land cover */
     struct db_reflect_law laws[DB_CLASS_MAX]; /* of the table's classes */

@@ -27,11 +27,11 @@ struct image_writer {
     struct lm_image_header header;
     struct lm_classes classes;
     struct lm_band bands[LM_DB_BANDS_MAX];
-    uint32_t *records;                      /* record number of each directory entry; owned */
-    uint32_t *entry_of;                     /* and of each record its entry; owned */
-    struct image_detail_place *details;     /* and of each entry, where its detail lies; owned */
-    struct image_bytes targets, signatures; /* the sections; data NULL for an image without */
-    struct image_bytes geoid, detail;       /* the same */
+    uint32_t *records;                       /* record number of each directory entry; owned */
+    uint32_t *entry_of;                      /* and of each record its entry; owned */
+    struct image_detail_place *details;      /* and of each entry, where its detail lies; owned */
+    struct image_bytes targets, signatures;  /* the sections; data NULL for an image without */
+    struct image_bytes geoid, detail, radar; /* the same */
     uint32_t tiles_crc;
     struct image_sha256 tiles_sha256;
 };
@@ -53,8 +53,7 @@ void image_writer_detail(struct image_writer *w, uint32_t entry, uint32_t place,
 
 /* Finish: borders of tiles, directory, manifest and header. `manifest` is text to which the SHA-256
  * of the other sections is added. Title, centre, mean elevation and geoid are taken from w->header,
- * targets, signatures and detail from w->targets, w->signatures and w->detail, where the caller has
- * put them. Returns
+ * the optional sections from w->targets to w->radar, where the caller has put them. Returns
  * 0, or -1 with the error reported; either way the writer is done with. */
 int image_writer_end(struct image_writer *w, const char *manifest);
 
