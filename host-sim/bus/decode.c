@@ -2,6 +2,7 @@
 
 #include "drv/can_log.h"
 #include "hs/error.h"
+#include "hs/report.h"
 #include "lm/bus.h"
 #include "lm/canas_report.h"
 
@@ -27,6 +28,22 @@ static const char *const outcome_words[LM_BUS_OUTCOMES] = {
 
 static const char *const service_names[] = {"IDS", "NSS", "DDS", "DUS", "SCS", "TIS", "FPS", "STS",
                                             "FSS", "TCS", "BSS", "NIS", "MIS", "MCS", "CSS", "DSS"};
+
+static const char *const outcome_keys[LM_BUS_OUTCOMES] = {
+    [LM_BUS_VALUE] = "values",
+    [LM_BUS_HALF] = "half_of_a_double",
+    [LM_BUS_NOT_DATA] = "no_data_frame",
+    [LM_BUS_FOREIGN] = "foreign_identifier",
+    [LM_BUS_OTHER_CHANNEL] = "channel_not_used",
+    [LM_BUS_SERVICE] = "node_service",
+    [LM_BUS_UNUSED] = "not_used",
+    [LM_BUS_BAD_LENGTH] = "refused_length",
+    [LM_BUS_BAD_NODE] = "refused_node",
+    [LM_BUS_BAD_TYPE] = "refused_type",
+    [LM_BUS_NO_DATA] = "sender_has_no_value",
+    [LM_BUS_NOT_A_NUMBER] = "refused_not_a_number",
+    [LM_BUS_OUT_OF_RANGE] = "refused_range",
+};
 
 struct decoder {
     FILE *out;
@@ -222,6 +239,17 @@ static void print_summary(const struct decoder *d, const struct drv_can_log *log
     }
 }
 
+static void report(const struct decoder *d, const struct drv_can_log *log)
+{
+    hs_report_put("frames", d->bus.count.frames);
+    hs_report_put("malformed", log->count.malformed);
+    for (int i = 0; i < LM_BUS_OUTCOMES; i++) {
+        hs_report_put(outcome_keys[i], d->bus.count.outcome[i]);
+    }
+    hs_report_put("torn_pairs", d->bus.canas.count.torn_pairs);
+    hs_report_put("sequence_breaks", d->bus.canas.count.sequence_breaks);
+}
+
 int bus_decode(FILE *out, FILE *in, const char *path, const struct lm_bus_profile *profile)
 {
     struct decoder d = {.out = out, .path = path};
@@ -239,5 +267,6 @@ int bus_decode(FILE *out, FILE *in, const char *path, const struct lm_bus_profil
         return hs_error(path, NULL, "cannot be read: %s", strerror(errno));
     }
     print_summary(&d, &log);
+    report(&d, &log);
     return 0;
 }

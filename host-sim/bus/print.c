@@ -1,6 +1,7 @@
 #include "bus/print.h"
 
 #include "drv/can_socket.h"
+#include "hs/report.h"
 #include "lm/bus_filters.h"
 #include "lm/canas.h"
 #include "lm/canas_report.h"
@@ -51,6 +52,7 @@ void bus_print_filters(FILE *out, const struct lm_bus_profile *profile)
 {
     struct lm_can_filter filters[LM_BUS_FILTERS_MAX];
     const uint32_t count = lm_bus_filters(profile, filters);
+    hs_report_put("filters", count);
     for (uint32_t i = 0; i < count; i++) {
         const struct can_filter kernels = drv_can_socket_filter(&filters[i]);
         fprintf(out, filters[i].is_extended ? "%08X:%08X\n" : "%03X:%08X\n", filters[i].id,
@@ -114,10 +116,16 @@ void bus_print_table(FILE *out, const struct lm_bus_profile *profile)
 
 void bus_print_fields(FILE *out)
 {
+    hs_report_array("fields");
     for (int i = 0; i < LM_BUS_FIELDS; i++) {
-        fprintf(out, "%-18s %s\n", lm_bus_fields[i].name,
-                lm_bus_scale_of((enum lm_bus_field)i)->bus_unit);
+        const char *unit = lm_bus_scale_of((enum lm_bus_field)i)->bus_unit;
+        fprintf(out, "%-18s %s\n", lm_bus_fields[i].name, unit);
+        hs_report_object(NULL);
+        hs_report_put("name", lm_bus_fields[i].name);
+        hs_report_put("unit", unit);
+        hs_report_close();
     }
+    hs_report_close();
 }
 
 void bus_print_reports(FILE *out)
@@ -125,6 +133,7 @@ void bus_print_reports(FILE *out)
     fprintf(out,
             "| id | hex | item | type | unit or bytes | counts in a unit | period ms |\n"
             "|---|---|---|---|---|---|---|\n");
+    hs_report_put("reports", LM_REPORT_ITEMS);
     for (int i = 0; i < LM_REPORT_ITEMS; i++) {
         const struct lm_report_row *row = &lm_report_rows[i];
         fprintf(out, "| %u | %03X | %s | %s | %s | %d | %u |\n", row->id, row->id, row->name,

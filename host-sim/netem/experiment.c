@@ -3,6 +3,7 @@
 #include "hs/error.h"
 #include "hs/input_file.h"
 #include "hs/output_path.h"
+#include "hs/report.h"
 #include "netem/model_file.h"
 #include "netem/report.h"
 
@@ -94,6 +95,13 @@ static void print_epoch(const struct nm_training *t, double seconds)
     printf("epoch %d\t%s\ttraining %.6f\tvalidation %.6f\t%.1f s\n", t->epoch_count,
            nm_phase_names[e->phase], e->training, e->validation, seconds);
     fflush(stdout);
+    hs_report_object(NULL);
+    hs_report_put("epoch", t->epoch_count);
+    hs_report_put("phase", nm_phase_names[e->phase]);
+    hs_report_put("training_loss", e->training);
+    hs_report_put("validation_loss", e->validation);
+    hs_report_put("duration_s", seconds);
+    hs_report_close();
 }
 
 static double seconds_now(void)
@@ -113,6 +121,7 @@ int nm_experiment_train(struct nm_experiment *e, const char *folder, bool is_res
     hs_input_forget(path); /* It is continued in its place. */
     const struct nm_samples training = nm_dataset_training(&e->dataset);
     const struct nm_samples validation = nm_dataset_validation(&e->dataset);
+    hs_report_array("epochs");
     while (nm_training_phase(e->training) != NM_PHASES) {
         const double before = seconds_now();
         if (nm_training_epoch(e->training, &training, &validation) != 0 ||
@@ -121,6 +130,7 @@ int nm_experiment_train(struct nm_experiment *e, const char *folder, bool is_res
         }
         print_epoch(e->training, seconds_now() - before);
     }
+    hs_report_close();
     return 0;
 }
 

@@ -2,6 +2,7 @@
 #include "hs/error.h"
 #include "hs/output_path.h"
 #include "hs/progress.h"
+#include "hs/report.h"
 #include "netem/experiment.h"
 #include "netem/report.h"
 
@@ -299,8 +300,31 @@ int nm_experiment_score(struct nm_experiment *e, const struct nm_samples *sample
     return result;
 }
 
+static void report_score(const char *key, const struct nm_score *s, double best_gain, double best)
+{
+    hs_report_object(key);
+    hs_report_put("mse", s->mse);
+    hs_report_put("ssim", s->ssim);
+    hs_report_put("cw_ssim", s->cw_ssim);
+    hs_report_put("best_gain", best_gain);
+    hs_report_put("best_cw_ssim", best);
+    hs_report_close();
+}
+
+static void report_summary(const struct nm_summary *s, const char *what)
+{
+    hs_report_object("score");
+    hs_report_put("what", what);
+    hs_report_put("chips", s->count);
+    report_score("learned", &s->learned, s->learned_best_gain, s->learned_best);
+    report_score("own_law", &s->own, s->own_best_gain, s->own_best);
+    hs_report_put("own_law_gain", s->own_gain);
+    hs_report_close();
+}
+
 void nm_summary_print(const struct nm_summary *s, const char *what)
 {
+    report_summary(s, what);
     printf("%s, %d chips:\n", what, s->count);
     printf("  learned   mse %.6f   ssim %.4f   cw-ssim %.4f, at its best gain (%.2f) %.4f\n",
            s->learned.mse, s->learned.ssim, s->learned.cw_ssim, s->learned_best_gain,

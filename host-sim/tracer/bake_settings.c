@@ -3,6 +3,7 @@
 #include "bake_sheet.h"
 
 #include "hs/error.h"
+#include "hs/report.h"
 
 #include <inttypes.h>
 #include <math.h>
@@ -126,6 +127,23 @@ static void print_report(const struct db_signature *s, const struct bake_report 
         r->mean_dbsm, r->least_dbsm, r->most_dbsm, r->gain_db, 100 * r->lost_share, seconds);
 }
 
+static void report_signature(const struct db_signature *s, const struct bake_report *r)
+{
+    hs_report_text_within("name", s->head.name, sizeof s->head.name);
+    hs_report_put("chips", db_signature_chips(&s->head));
+    hs_report_put("aspects", s->head.aspects);
+    hs_report_put("depressions", s->head.depressions);
+    hs_report_put("pixel_m", s->head.pixel_mm / 1000.0);
+    hs_report_put("origin_row", s->head.origin_row);
+    hs_report_put("height_m", s->head.height_mm / 1000.0);
+    hs_report_put("mean_rcs_dbsm", r->mean_dbsm);
+    hs_report_put("least_rcs_dbsm", r->least_dbsm);
+    hs_report_put("greatest_rcs_dbsm", r->most_dbsm);
+    hs_report_put("gain_db", r->gain_db);
+    hs_report_put("lost_share", r->lost_share);
+    hs_report_put("saturated_pixels", r->saturated);
+}
+
 static double now_seconds(void)
 {
     struct timespec t;
@@ -150,6 +168,7 @@ int bake_run(const struct bake_settings *s, const struct bake_order *order, cons
     }
     if (result == 0) {
         print_report(&signature, &report, now_seconds() - start);
+        report_signature(&signature, &report);
     }
     if (result == 0 && report.saturated > 0) {
         hs_warn(s->out, "give a smaller --gain or --mean",

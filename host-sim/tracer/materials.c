@@ -2,6 +2,7 @@
 
 #include "hs/error.h"
 #include "hs/input_file.h"
+#include "hs/report.h"
 
 #include <errno.h>
 #include <math.h>
@@ -109,12 +110,30 @@ int materials_for(const struct trace_records *r, const char *path, struct reflec
     return 0;
 }
 
+static void report_material(const struct reflect_material *m)
+{
+    hs_report_object(NULL);
+    hs_report_put("name", m->name);
+    hs_report_put("permittivity", m->permittivity);
+    hs_report_put("loss", m->loss);
+    hs_report_put("rms_height_m", m->rms_height_m);
+    hs_report_put("correlation_m", m->correlation_m);
+    hs_report_put("specular", m->specular);
+    hs_report_put("roughness", m->roughness);
+    hs_report_put("diffuse", m->diffuse);
+    hs_report_put("brilliance", m->brilliance);
+    hs_report_close();
+}
+
 void materials_print(void)
 {
     puts("# NAME PERMITTIVITY LOSS RMS_HEIGHT_M CORRELATION_M F_S F_R F_D F_B");
+    hs_report_array("materials");
     for (int i = 0; i < BUILT_IN; i++) {
         const struct reflect_material *m = &built_in[i];
+        report_material(m);
         printf("%s %g %g %g %g %g %g %g %g\n", m->name, m->permittivity, m->loss, m->rms_height_m,
                m->correlation_m, m->specular, m->roughness, m->diffuse, m->brilliance);
     }
+    hs_report_close();
 }

@@ -7,6 +7,7 @@
 #include "hs/input_file.h"
 #include "hs/menu.h"
 #include "hs/options.h"
+#include "hs/report.h"
 
 #include <errno.h>
 #include <string.h>
@@ -126,6 +127,7 @@ static int run_command(const struct hs_usage *usage, int argc, char **argv)
         }
         c.profile = &table.profile;
     }
+    hs_report_put("items", c.profile->row_count);
     return run(&c) == 0 ? HS_EXIT_OK : HS_EXIT_FAILED;
 }
 

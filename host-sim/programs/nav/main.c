@@ -121,6 +121,38 @@ static void report(const struct command *c, const struct nav_track *t, const str
             (unsigned long long)sent->frames, sent->active_s, per_second, per_second / 8000 * 100);
 }
 
+static const char *datum_name(const struct nav_track *t)
+{
+    return !t->has_height                     ? NULL
+           : t->datum == NAV_DATUM_BAROMETRIC ? "barometric"
+           : t->datum == NAV_DATUM_SEA_LEVEL  ? "sea level"
+                                              : "ellipsoid";
+}
+
+static void report_json(const struct nav_track *t, const struct findings *f,
+                        const struct nav_sent *sent)
+{
+    const struct nav_findings *found = &f->track;
+    hs_report_put("fixes", t->count);
+    hs_report_put("span_s", found->span_s);
+    hs_report_put("median_interval_s", found->median_interval_s);
+    hs_report_object("left_out");
+    hs_report_put("malformed", f->reading.malformed);
+    hs_report_put("out_of_order", f->reading.disordered);
+    hs_report_put("without_position", f->reading.missing);
+    hs_report_put("repeated_in_motion", f->repeats);
+    hs_report_put("barometric_heights", f->reading.heights_left_out);
+    hs_report_close();
+    hs_report_put("gaps", found->gaps);
+    hs_report_put("gap_limit_s", found->max_gap_s);
+    hs_report_put("jumps", found->jumps);
+    hs_report_put("repeated_positions", found->holds);
+    hs_report_put("isolated_fixes", found->isolated);
+    hs_report_put("height_datum", datum_name(t));
+    hs_report_put("frames", sent->frames);
+    hs_report_put("active_s", sent->active_s);
+}
+
 static int write_log(const struct command *c, const struct nav_track *t, struct nav_sent *sent)
 {
     if (!c->out_path) {
@@ -157,6 +189,7 @@ static int run(struct command *c, struct nav_track *t)
     if (write_log(c, t, &sent) != 0) {
         return -1;
     }
+    report_json(t, &found, &sent);
     if (!c->is_quiet) {
         report(c, t, &found, &sent);
     }

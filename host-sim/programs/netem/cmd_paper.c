@@ -2,6 +2,7 @@
 
 #include "hs/error.h"
 #include "hs/output_path.h"
+#include "hs/report.h"
 #include "netem/experiment.h"
 #include "netem/report.h"
 
@@ -81,6 +82,8 @@ static int train_one(struct nm_experiment *e, const char *folder, const char *ta
     }
     e->settings.architecture = architecture;
     printf("== %s\n", name);
+    hs_report_object(NULL);
+    hs_report_put("name", name);
     const struct nm_samples others = nm_dataset_validation(&e->dataset);
     if (nm_experiment_train(e, path, has_training(path)) != 0 ||
         nm_experiment_plot(e->training, path, (int)e->view.scene.material_count, NULL) != 0 ||
@@ -88,6 +91,7 @@ static int train_one(struct nm_experiment *e, const char *folder, const char *ta
         return -1;
     }
     nm_summary_print(&summary, name);
+    hs_report_close();
     return 0;
 }
 
@@ -121,6 +125,7 @@ static int run(struct nm_settings *s, const struct folders *f)
         hs_output_path(unused, sizeof unused, f->out, "") != 0) {
         return -1;
     }
+    hs_report_array("trainings");
     s->gain = 1; /* MSTAR magnitudes are calibrated */
     s->calibration.is_counted_left = f->is_counted_left;
     s->calibration.turn_deg = f->slicy_turn_deg;

@@ -2,6 +2,7 @@
 
 #include "hs/error.h"
 #include "hs/progress.h"
+#include "hs/report.h"
 #include "netem/experiment.h"
 
 #include <math.h>
@@ -176,13 +177,23 @@ static void print_errors(const struct nm_experiment *e, const struct hidden *h)
     }
     printf("validation loss %.6f (paper, real SLICY: 0.003253); of that, speckle %.6f\n",
            t->epochs[t->epoch_count - 1].validation, h->noise);
+    hs_report_put("validation_loss", t->epochs[t->epoch_count - 1].validation);
+    hs_report_put("speckle_loss", h->noise);
+    hs_report_array("law_errors");
     for (int d = 0; d < NM_DIRECTIONS; d++) {
         for (uint32_t m = 0; m < e->view.scene.material_count; m++) {
+            hs_report_object(NULL);
+            hs_report_put("direction", d == NM_BK ? "back" : "specular");
+            hs_report_put("material", h->truth.materials[m].name);
+            hs_report_put("mean_error", errors[d][m].sum / errors[d][m].weight);
+            hs_report_put("reflections", errors[d][m].count);
+            hs_report_close();
             printf("mean error of the law, %s, %s: %.4f over %ld reflections never shown\n",
                    d == NM_BK ? "back" : "specular", h->truth.materials[m].name,
                    errors[d][m].sum / errors[d][m].weight, errors[d][m].count);
         }
     }
+    hs_report_close();
 }
 
 static int run(const struct nm_settings *settings, struct hidden *h, bool is_resumed)

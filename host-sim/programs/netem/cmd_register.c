@@ -3,6 +3,7 @@
 #include "hs/atomic_file.h"
 #include "hs/error.h"
 #include "hs/progress.h"
+#include "hs/report.h"
 #include "netem/search.h"
 #include "netem/settings.h"
 
@@ -172,7 +173,14 @@ static void print_summary(const struct run *r)
         "ambiguous (another view, more than 30 degrees away, fits within %g): %d; "
         "fits better: %d\n",
         ambiguous, close, against);
+    hs_report_put("chips", r->list.count);
+    hs_report_put("views", r->library.views);
+    hs_report_put("correlation", correlation);
+    hs_report_put("opposite_correlation", opposite);
+    hs_report_put("ambiguous", close);
+    hs_report_put("better_elsewhere", against);
     if (r->is_in_order) {
+        hs_report_put("step_deg", r->step_deg);
         printf("steady step from chip to chip: %.0f degrees\n", r->step_deg);
     }
 }

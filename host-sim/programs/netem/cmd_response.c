@@ -2,6 +2,7 @@
 
 #include "hs/error.h"
 #include "hs/options.h"
+#include "hs/report.h"
 #include "realradar/point_response.h"
 #include "realradar/speckle_statistics.h"
 #include "tracer/pix.h"
@@ -53,6 +54,11 @@ static void print_cut(const char *name, const char *direction, const struct rr_c
     }
     printf("%-24s %-6s %20.4f %14.1f dB %14.1f dB\n", name, direction, sqrt(square / count),
            20 * log10(side), 20 * log10(real_side));
+    hs_report_object(direction);
+    hs_report_put("main_lobe_difference", sqrt(square / count));
+    hs_report_put("side_lobe_db", 20 * log10(side));
+    hs_report_put("real_side_lobe_db", 20 * log10(real_side));
+    hs_report_close();
 }
 
 static int print_points(const struct rr_phase_history *history, const struct rr_image *image,
@@ -64,21 +70,35 @@ static int print_points(const struct rr_phase_history *history, const struct rr_
     if (rr_compress(&weighted, history, taylor_db) != 0) {
         return -1;
     }
+    hs_report_array("points");
     printf("point at x, y in m       cut    difference, main lobe   side lobe, ours   real\n");
     for (int i = 0; i < count; i++) {
         struct rr_response r;
         char name[64];
         rr_response_measure(&r, &weighted, resolution, places[i]);
         snprintf(name, sizeof name, "%.2f, %.2f", r.place.x, r.place.y);
+        hs_report_object(NULL);
+        hs_report_put("x_m", r.place.x);
+        hs_report_put("y_m", r.place.y);
         print_cut(name, "range", &r.range);
         print_cut(name, "cross", &r.cross);
+        hs_report_close();
     }
+    hs_report_close();
     rr_profiles_free(&weighted);
     return 0;
 }
 
-static void print_statistics(const char *name, const struct rr_statistics *s, double cells)
+static void print_statistics(const char *key, const char *name, const struct rr_statistics *s,
+                             double cells)
 {
+    hs_report_object(key);
+    hs_report_put("cells", cells);
+    hs_report_put("cv_power", s->cv_intensity);
+    hs_report_put("cv_amplitude", s->cv_amplitude);
+    hs_report_put("std_db", s->db_std);
+    hs_report_put("ks", s->ks);
+    hs_report_close();
     printf("%-24s %8.0f %10.3f %10.3f %8.2f %8.4f\n", name, cells, s->cv_intensity, s->cv_amplitude,
            s->db_std, s->ks);
 }
@@ -105,8 +125,9 @@ static int print_speckle(const struct rr_image *image, const struct rr_resolutio
         rr_statistics_of(&ours, values, SPECKLE_CELLS);
         printf("\nspeckle of one look         cells   CV power  CV ampl.   dB std       KS\n");
         printf("%-24s %8s %10.3f %10.3f %8.2f %8.4f\n", "theory", "", 1.0, 0.523, 5.57, 0.0);
-        print_statistics("simulated", &ours, SPECKLE_CELLS);
-        print_statistics("real even ground", &ground->pooled, ground->cells * ground->bright);
+        print_statistics("simulated", "simulated", &ours, SPECKLE_CELLS);
+        print_statistics("real", "real even ground", &ground->pooled,
+                         ground->cells * ground->bright);
     }
     free(ground);
     free(power);

@@ -5,6 +5,7 @@
 #include "hs/error.h"
 #include "hs/options.h"
 #include "hs/output_path.h"
+#include "hs/report.h"
 #include "realradar/class_order.h"
 
 #include <stdio.h>
@@ -21,6 +22,26 @@ static const struct hs_usage usage = {
 static void print_spread(const struct rr_spread *s)
 {
     printf(" %7.1f (%6.1f ..%6.1f) |", s->median, s->low, s->high);
+}
+
+static void report_spread(const char *key, const struct rr_spread *s)
+{
+    hs_report_object(key);
+    hs_report_put("median_db", s->median);
+    hs_report_put("low_db", s->low);
+    hs_report_put("high_db", s->high);
+    hs_report_close();
+}
+
+static void report_row(const struct rr_class_row *row, const char *name)
+{
+    hs_report_object(NULL);
+    hs_report_put("name", name);
+    hs_report_put("pixels", row->pixels);
+    report_spread("measured", &row->measured);
+    report_spread("database", &row->reflectivity);
+    report_spread("simulated", &row->simulated);
+    hs_report_close();
 }
 
 static const char *name_of(const struct db_class_table *table, const struct rr_class_row *row)
@@ -54,18 +75,25 @@ static void print_order(const struct rr_class_order *order, const struct db_clas
         "| class | pixels | measured | database | with speckle, %d looks "
         "|\n|---|---|---|---|---|\n",
         RR_SIMULATED_LOOKS);
+    hs_report_array("classes");
     for (int i = 0; i < order->count; i++) {
         const struct rr_class_row *row = &order->rows[i];
+        report_row(row, name_of(table, row));
         printf("| %-10s | %6zu |", name_of(table, row), row->pixels);
         print_spread(&row->measured);
         print_spread(&row->reflectivity);
         print_spread(&row->simulated);
         printf("\n");
     }
+    hs_report_close();
     printf("\n");
     const int agreeing = print_pairs(order, table);
     printf("pairs of classes in the same order: %d of %d\n", agreeing,
            order->count * (order->count - 1) / 2);
+    hs_report_put("pairs", order->count * (order->count - 1) / 2);
+    hs_report_put("pairs_in_order", agreeing);
+    hs_report_put("class_rank_correlation", order->class_correlation);
+    hs_report_put("pixel_rank_correlation", order->pixel_correlation);
     printf("rank correlation: %.2f of the classes, %.2f of the pixels\n", order->class_correlation,
            order->pixel_correlation);
 }

@@ -4,6 +4,7 @@
 #include "hs/error.h"
 #include "hs/options.h"
 #include "hs/output_path.h"
+#include "hs/report.h"
 #include "realradar/point_response.h"
 #include "realradar/speckle_statistics.h"
 
@@ -32,6 +33,18 @@ struct focus {
     double side_m, pixel_m;
 };
 
+static void report_statistics(const char *key, const struct rr_statistics *s, double cells)
+{
+    hs_report_object(key);
+    hs_report_put("cells", cells);
+    hs_report_put("cv_power", s->cv_intensity);
+    hs_report_put("cv_amplitude", s->cv_amplitude);
+    hs_report_put("std_db", s->db_std);
+    hs_report_put("ks", s->ks);
+    hs_report_put("enl", s->enl);
+    hs_report_close();
+}
+
 static void print_row(const char *name, const struct rr_statistics *s, double cells)
 {
     printf("| %-32s | %7.0f | %.3f | %.3f | %.2f | %.4f | %.3f |\n", name, cells, s->cv_intensity,
@@ -57,23 +70,44 @@ static int print_firmware(void)
     rr_firmware_speckle(power, FIRMWARE_SIDE, 0, 1);
     rr_statistics_of(&s, power, cells);
     print_row("simulated: the firmware, 1 look", &s, (double)cells);
+    report_statistics("firmware", &s, (double)cells);
     free(power);
     return 0;
+}
+
+static void report_window(const struct rr_window *w, struct rr_place place, bool is_bright,
+                          const struct rr_statistics *s)
+{
+    hs_report_object(NULL);
+    hs_report_put("x_m", place.x);
+    hs_report_put("y_m", place.y);
+    hs_report_put("mean", w->mean);
+    hs_report_put("texture", w->texture);
+    hs_report_flag("is_bright", is_bright);
+    hs_report_put("cv_power", s->cv_intensity);
+    hs_report_put("cv_amplitude", s->cv_amplitude);
+    hs_report_put("std_db", s->db_std);
+    hs_report_put("ks", s->ks);
+    hs_report_put("enl", s->enl);
+    hs_report_close();
 }
 
 static void print_windows(const struct rr_ground *ground, const struct rr_image *image)
 {
     print_header("even window, centre x, y in m; level; texture", "kind");
+    hs_report_array("windows");
     for (int i = 0; i < ground->count; i++) {
         const struct rr_window *w = &ground->windows[i];
         const struct rr_statistics *s = &ground->each[i];
         const struct rr_place place =
             rr_image_place(image, w->column + RR_WINDOW_PX / 2, w->row + RR_WINDOW_PX / 2);
+        report_window(w, place, i < ground->bright, s);
         printf("| %6.1f, %6.1f; %5.1f dB; %.2f | %s | %.3f | %.3f | %.2f | %.4f | %.3f |\n",
                place.x, place.y, 10 * log10(w->mean / ground->windows[0].mean), w->texture,
                i < ground->bright ? "bright" : "dark", s->cv_intensity, s->cv_amplitude, s->db_std,
                s->ks, s->enl);
     }
+    hs_report_close();
 }
 
 /* The same geometry with noise for an echo, at the same places of the same picture. */
@@ -120,6 +154,8 @@ static int print_speckle(const struct focus *f)
                   ground[1].cells * ground[1].bright);
         print_row("real: bright even ground", &ground[0].pooled,
                   ground[0].cells * ground[0].bright);
+        report_statistics("noise", &ground[1].pooled, ground[1].cells * ground[1].bright);
+        report_statistics("real", &ground[0].pooled, ground[0].cells * ground[0].bright);
         printf("\nsampling: CV power 1 / sqrt(cells) = %.3f; KS at 5 %% (Stephens 1974) %.3f\n",
                1 / sqrt(ground[0].cells * ground[0].bright),
                1.094 / sqrt(ground[0].cells * ground[0].bright));
@@ -136,11 +172,28 @@ static void print_cut(const char *name, const char *direction, const struct rr_c
            cut->irw_cells * cell_m, cut->irw_cells, cut->pslr_db, cut->islr_db);
 }
 
+static void report_cut(const char *key, const struct rr_cut *cut, double cell_m)
+{
+    hs_report_object(key);
+    hs_report_put("irw_m", cut->irw_cells * cell_m);
+    hs_report_put("irw_cells", cut->irw_cells);
+    hs_report_put("pslr_db", cut->pslr_db);
+    hs_report_put("islr_db", cut->islr_db);
+    hs_report_close();
+}
+
 static void print_response(const char *name, const struct rr_response *r,
                            const struct rr_resolution *resolution)
 {
     print_cut(name, "range", &r->range, resolution->range_m);
     print_cut(name, "cross", &r->cross, resolution->cross_m);
+    hs_report_object(NULL);
+    hs_report_put("name", name);
+    hs_report_put("x_m", r->place.x);
+    hs_report_put("y_m", r->place.y);
+    report_cut("range", &r->range, resolution->range_m);
+    report_cut("cross", &r->cross, resolution->cross_m);
+    hs_report_close();
 }
 
 /* A perfect point at the scene's centre, in the same geometry. */
@@ -178,6 +231,7 @@ static int print_points_weighted(const struct focus *f, const struct rr_place *p
     printf(weighting_db > 0
                ? "| theory                       | both  | | 1.187 | -35.2 | -27.4 |\n"
                : "| theory                       | both  | | 0.886 | -13.26 | -9.7 |\n");
+    hs_report_array(weighting_db > 0 ? "points_taylor" : "points_unweighted");
     const int status = print_perfect(f, weighting_db);
     for (int i = 0; i < count; i++) {
         struct rr_response response;
@@ -186,6 +240,7 @@ static int print_points_weighted(const struct focus *f, const struct rr_place *p
         snprintf(name, sizeof name, "real, at %.2f, %.2f m", response.place.x, response.place.y);
         print_response(name, &response, &f->resolution);
     }
+    hs_report_close();
     rr_profiles_free(&profiles);
     return status;
 }
@@ -209,6 +264,14 @@ static void print_geometry(const struct focus *f)
         "degrees\n",
         f->history.frequencies, r->bandwidth_hz / 1e6, rr_light_m_s / r->wavelength_m / 1e9,
         f->history.pulses, r->aperture_rad * degrees, r->grazing_rad * degrees);
+    hs_report_put("frequencies", f->history.frequencies);
+    hs_report_put("bandwidth_hz", r->bandwidth_hz);
+    hs_report_put("wavelength_m", r->wavelength_m);
+    hs_report_put("pulses", f->history.pulses);
+    hs_report_put("aperture_deg", r->aperture_rad * degrees);
+    hs_report_put("grazing_deg", r->grazing_rad * degrees);
+    hs_report_put("range_cell_m", r->range_m);
+    hs_report_put("cross_cell_m", r->cross_m);
     printf("resolution cell on the ground: %.3f m in range (c/2B cos), %.3f m across\n", r->range_m,
            r->cross_m);
 }

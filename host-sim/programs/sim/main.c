@@ -226,6 +226,84 @@ static int fly(struct sim *s)
     return status < 0 ? -1 : 0;
 }
 
+static void report_bus(const struct sim *s)
+{
+    static const struct {
+        enum lm_bus_outcome outcome;
+        const char *key;
+    } outcomes[] = {{LM_BUS_VALUE, "values"},
+                    {LM_BUS_UNUSED, "not_used"},
+                    {LM_BUS_BAD_LENGTH, "refused_length"},
+                    {LM_BUS_BAD_NODE, "refused_node"},
+                    {LM_BUS_BAD_TYPE, "refused_type"},
+                    {LM_BUS_NOT_A_NUMBER, "refused_not_a_number"},
+                    {LM_BUS_OUT_OF_RANGE, "refused_range"}};
+    const struct lm_unit *u = s->bench.unit;
+    hs_report_object("bus");
+    hs_report_put("frames", u->count.bus_frames);
+    hs_report_put("malformed", s->log_file ? s->log.count.malformed : s->socket.count.malformed);
+    hs_report_put("errors", u->count.bus_errors);
+    for (size_t i = 0; i < sizeof outcomes / sizeof outcomes[0]; i++) {
+        hs_report_put(outcomes[i].key, u->bus.count.outcome[outcomes[i].outcome]);
+    }
+    hs_report_close();
+    const struct lm_weather_bus *w = &u->weather.bus;
+    hs_report_object("weather");
+    hs_report_put("sets", w->count.sets);
+    hs_report_put("torn", w->count.torn);
+    hs_report_put("out_of_range", w->count.refused);
+    hs_report_put("frames_numbered_above_3", w->count.numbers);
+    hs_report_put("frames_of_a_second_sender", w->count.rivals);
+    hs_report_close();
+}
+
+static void report_map(const struct lm_unit *u)
+{
+    const struct lm_tile_cache *t = &u->map.tiles;
+    hs_report_object("tiles");
+    hs_report_put("read", t->count.tiles_read);
+    hs_report_put("bytes_read", t->count.bytes_read);
+    hs_report_put("evicted", t->count.evicted);
+    hs_report_put("hits", lm_tile_cache_hits(t));
+    hs_report_put("misses", t->count.misses);
+    hs_report_put("substituted", t->count.substituted);
+    hs_report_put("off_map", t->count.off_map);
+    hs_report_close();
+    hs_report_object("faults");
+    hs_report_put("flash_reads_failed", t->count.io_errors);
+    hs_report_put("records_corrupt", lm_unit_map_corrupt_records(&u->map));
+    hs_report_put("requests_dropped", t->count.requests_dropped);
+    hs_report_put("display_errors", u->count.display_errors);
+    hs_report_close();
+    hs_report_object("targets");
+    hs_report_put("held", u->map.target_set.count);
+    hs_report_put("lost", u->map.count.targets_lost);
+    hs_report_put("signatures_held", u->map.db.signature_count - u->map.count.signatures_lost);
+    hs_report_put("signatures_lost", u->map.count.signatures_lost);
+    hs_report_put("chips_read", u->map.chips.count.read);
+    hs_report_put("chips_corrupt", u->map.chips.count.corrupt);
+    hs_report_put("chips_left_out", u->map.chips.count.left_out);
+    hs_report_put("chip_cells_left_out", u->map.chips.count.cells_left_out);
+    hs_report_put("detail_left_out", u->picture.sar.detail.left_out);
+    hs_report_close();
+}
+
+static void report_flight(const struct sim *s)
+{
+    const struct lm_unit *u = s->bench.unit;
+    hs_report_put("frames", u->count.frames);
+    hs_report_put("lines", u->count.lines);
+    hs_report_put("lines_dropped", u->count.lines_dropped);
+    hs_report_put("pictures_written", s->pictures_written);
+    hs_report_put("position_jumps", u->nav.position_jumps);
+    hs_report_put("commands_refused", u->count.commands_refused);
+    report_bus(s);
+    hs_report_flag("map_is_usable", u->map.is_usable);
+    if (u->map.is_usable) {
+        report_map(u);
+    }
+}
+
 static void print_targets(const struct lm_unit *u)
 {
     printf("targets: %u held, %u of the image not; signatures: %u held, %u not\n",
@@ -347,6 +425,9 @@ static int run(struct sim *s)
     int status = fly(s);
     if (status == 0 && o->bus_out) {
         status = hs_atomic_commit(&s->sent);
+    }
+    if (status == 0) {
+        report_flight(s);
     }
     if (status == 0 && !o->is_quiet) {
         print_summary(s);

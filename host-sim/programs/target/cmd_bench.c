@@ -1,6 +1,7 @@
 #include "commands.h"
 
 #include "hs/error.h"
+#include "hs/report.h"
 #include "tracer/setup.h"
 #include "tracer/trace_tile.h"
 
@@ -162,6 +163,18 @@ static void print(const struct times *t)
     printf("primary_rays %u\nrays %llu\n", p->columns * p->rows, (unsigned long long)t->rays);
     printf("trace_cpu_ms %.2f\nembree_cpu_ms %.2f\n", 1e3 * t->trace_cpu_s, 1e3 * t->embree_cpu_s);
     printf("rays_per_cpu_s %.4g\n", (double)t->rays / t->trace_cpu_s);
+    hs_report_put("columns", p->columns);
+    hs_report_put("rows", p->rows);
+    hs_report_put("plane_width_m", p->columns * p->step_across_m);
+    hs_report_put("plane_height_m", height_m);
+    hs_report_put("plane_middle_m", p->low_up_m + height_m / 2);
+    hs_report_put("primary_rays", (uint64_t)p->columns * p->rows);
+    hs_report_put("rays", t->rays);
+    hs_report_put("trace_cpu_s", t->trace_cpu_s);
+    hs_report_put("embree_cpu_s", t->embree_cpu_s);
+    hs_report_put("rays_per_cpu_s", (double)t->rays / t->trace_cpu_s);
+    hs_report_put("chip_s", t->chip_s);
+    hs_report_put("memory_bytes", (uint64_t)use.ru_maxrss * 1024);
     printf("chip_ms %.2f\nmemory_mb %ld\n", 1e3 * t->chip_s, use.ru_maxrss / 1024);
 }
 

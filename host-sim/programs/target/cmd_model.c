@@ -3,6 +3,7 @@
 
 #include "hs/error.h"
 #include "hs/png.h"
+#include "hs/report.h"
 #include "tracer/mesh_audit.h"
 #include "tracer/model_file.h"
 #include "tracer/models.h"
@@ -18,6 +19,29 @@ static const struct hs_usage usage = {
     "  tank       a tank of a T-72's dimensions, of boxes, cylinders and plates\n"
     "  plate, dihedral, trihedral, tophat   single reflectors, about a metre in size\n"
     "Metres; x points ahead (the nose), y to the left, z up; the ground is z = 0."};
+
+static void report_corner(const char *key, struct vec corner)
+{
+    hs_report_object(key);
+    hs_report_put("ahead_m", corner.x);
+    hs_report_put("left_m", corner.y);
+    hs_report_put("up_m", corner.z);
+    hs_report_close();
+}
+
+static void report(const struct mesh *m, const struct mesh_audit *audit, struct vec low,
+                   struct vec high)
+{
+    hs_report_put("triangles", m->triangle_count);
+    hs_report_put("parts", audit->part_count);
+    hs_report_put("materials", m->material_count);
+    report_corner("least", low);
+    report_corner("greatest", high);
+    hs_report_put("open_edges", audit->open_edges);
+    hs_report_put("turned_edges", audit->turned_edges);
+    hs_report_put("inside_out_parts", audit->inside_out);
+    hs_report_put("triangles_without_area", audit->degenerate);
+}
 
 static int describe(const struct setup *s, const struct mesh *m)
 {
@@ -35,6 +59,7 @@ static int describe(const struct setup *s, const struct mesh *m)
         "%u open edges, %u edges whose sides disagree, %u parts inside out, %u triangles "
         "without area\n",
         audit.open_edges, audit.turned_edges, audit.inside_out, audit.degenerate);
+    report(m, &audit, low, high);
     return 0;
 }
 

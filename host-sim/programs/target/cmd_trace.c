@@ -2,6 +2,7 @@
 #include "table_picture.h"
 
 #include "hs/error.h"
+#include "hs/report.h"
 #include "tracer/setup.h"
 
 #include <stdio.h>
@@ -31,6 +32,19 @@ static int write_outputs(const struct trace_records *r, const struct outputs *o)
                           "reflection %ld was not traced", o->bounce);
 }
 
+static void report(const struct trace_records *r, uint64_t rays_cast)
+{
+    hs_report_put("columns", r->sensor.columns);
+    hs_report_put("rows", r->sensor.rows);
+    hs_report_put("primary_rays", (uint64_t)r->sensor.columns * r->sensor.rows);
+    hs_report_put("rays", rays_cast);
+    hs_report_array("reflections");
+    for (uint32_t b = 0; b < r->bounce_count; b++) {
+        hs_report_put(NULL, r->bounces[b].count);
+    }
+    hs_report_close();
+}
+
 static int run(const struct setup *s, const struct outputs *outputs)
 {
     struct scene scene;
@@ -50,6 +64,7 @@ static int run(const struct setup *s, const struct outputs *outputs)
             printf(" %u", r.bounces[b].count);
         }
         putchar('\n');
+        report(&r, rays_cast);
         trace_records_free(&r);
     }
     return result == 0 ? HS_EXIT_OK : HS_EXIT_FAILED;

@@ -23,8 +23,8 @@ void nm_experiment_close(struct nm_experiment *e);
 int nm_experiment_load(struct nm_experiment *e, const struct nm_chip_list *list);
 
 /* Train from the beginning, or from FOLDER/training.netem when `is_resumed`; that file is written
- * after each epoch, a line printed. A finished or begun training is never overwritten. Returns 0,
- * or -1 reported. */
+ * after each epoch, a line printed and an item put into the report's array "epochs". A finished or
+ * begun training is never overwritten. Returns 0, or -1 reported. */
 int nm_experiment_train(struct nm_experiment *e, const char *folder, bool is_resumed);
 
 /* Take a training that exists. Returns 0, or -1 reported. */
@@ -51,6 +51,8 @@ struct nm_summary {
  * the training chips. Returns 0, or -1 reported. */
 int nm_experiment_score(struct nm_experiment *e, const struct nm_samples *samples,
                         const char *folder, struct nm_summary *summary);
+
+/* Print the summary, and report it as the object "score" (hs/report.h). */
 void nm_summary_print(const struct nm_summary *summary, const char *what);
 
 #endif
