@@ -331,15 +331,21 @@ static void print_shot(const struct work *w, const struct shot *s, double hour)
 {
     hs_report_object(NULL);
     hs_report_put("hour", hour);
+    hs_report_put("air_c", s->air.kelvin - zero_celsius);
+    hs_report_array("classes");
     printf("%05.2f h, air %.1f C:", hour, s->air.kelvin - zero_celsius);
     for (int c = 0; c < w->table.count; c++) {
         if (s->count[c] > 0) {
             const double mean_c = s->sum[c] / s->count[c] - zero_celsius;
             printf("  %s %.1f", w->table.items[c].name, mean_c);
-            hs_report_put(w->table.items[c].name, mean_c);
+            hs_report_object(NULL);
+            hs_report_put("name", w->table.items[c].name);
+            hs_report_put("mean_c", mean_c);
+            hs_report_close();
         }
     }
     printf("\n");
+    hs_report_close();
     hs_report_close();
 }
 

@@ -285,6 +285,22 @@ def db_reflect():
                    for key, i in (("mean_db", 2), ("spread_db", 4), ("least_db", 6), ("greatest_db", 7)))
 
 
+def db_infrared():
+    document, text = run("db", "infrared", "--class-raster", here("scene/truth.tif"), "--classes", CLASSES, "--hours", "4,14",
+                         "--out", here("infrared"))
+    r = document["report"]
+    day, latitude = find(r"^day (\d+) of the year at (\S+) degrees", text)
+    assert r["day_of_year"] == day and near(r["latitude_deg"], latitude, 0.01)
+    lines = re.findall(r"^([\d.]+) h, air (\S+) C:(.*)$", text, re.M)
+    assert len(lines) == len(r["pictures"]) == 2
+    for picture, (hour, air, classes) in zip(r["pictures"], lines):
+        assert near(picture["hour"], float(hour), 0.01) and near(picture["air_c"], float(air), 0.1)
+        words = classes.split()
+        assert [c["name"] for c in picture["classes"]] == words[::2] and len(words) >= 8
+        assert all(near(c["mean_c"], float(value), 0.1) for c, value in zip(picture["classes"], words[1::2]))
+    files_of(document, here("infrared"))
+
+
 def db_build():
     document, text = run("db", "build", "--classes", CLASSES, "--terrain", here("scene/terrain.tif"), "--class-raster",
                          here("scene/truth.tif"), "--targets", here("targets"), "--detail", here("scene/detail.txt"),
@@ -708,8 +724,8 @@ def the_document_lists_every_command():
 
 # In this order: some read what others wrote.
 CHECKS = {"db import": db_import, "db train": db_train, "db segment": db_segment, "db correct": db_correct,
-          "db vectors": db_vectors, "db reflect": db_reflect, "db build": db_build, "db inspect": db_inspect,
-          "db convert": db_convert, "db verify": db_verify, "db qgis": db_qgis, "db export": db_export,
+          "db vectors": db_vectors, "db reflect": db_reflect, "db infrared": db_infrared,
+          "db build": db_build, "db inspect": db_inspect, "db convert": db_convert, "db verify": db_verify, "db qgis": db_qgis, "db export": db_export,
           "db picture": db_picture, "scene": scene, "nav": nav, "bus decode": bus_decode, "bus fields": bus_fields,
           "bus table": bus_table, "bus dbc": bus_dbc, "bus filters": bus_filters, "bus reports": bus_reports, "sim": sim,
           "reference sar": reference("sar"), "reference gm": reference("gm"), "reference sector": reference("sector"),
