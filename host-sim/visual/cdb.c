@@ -26,7 +26,7 @@ double cdb_pixel_degrees(int level)
     return ldexp(1.0, -10 - level);
 }
 
-/* "N32" or "W118": a hemisphere and digits. */
+/* "N32" or "W118": a hemisphere and digits. Geocells begin below `most` and above it southwards. */
 static bool read_degrees(const char *name, const char *signs, int most, int *degrees)
 {
     const bool is_negative = name[0] == signs[1];
@@ -36,7 +36,7 @@ static bool read_degrees(const char *name, const char *signs, int most, int *deg
     }
     const long value = strtol(name + 1, &end, 10);
     *degrees = (int)(is_negative ? -value : value);
-    return *end == '\0' && value <= most;
+    return *end == '\0' && value <= most - !is_negative;
 }
 
 static bool meets(const struct cdb_area *a, const struct cdb_area *b)
@@ -133,23 +133,32 @@ int visual_cdb_open(struct visual_cdb *cdb, const char *root, const struct cdb_a
     return 0;
 }
 
-/* "L02" or "LC07". */
+/* "02" or "C07". */
 static bool read_level(const char *text, int *level)
 {
     const bool is_coarse = text[0] == 'C';
-    if (sscanf(text + is_coarse, "%d", level) != 1) {
+    if (sscanf(text + is_coarse, "%2d", level) != 1) {
         return false;
     }
     *level = is_coarse ? -*level : *level;
     return *level >= CDB_LEVEL_MIN && *level <= CDB_LEVEL_MAX;
 }
 
-/* N32W118_D004_S001_T001_L02_U2_R3.jp2 */
-static bool read_name(const char *name, struct cdb_tile *t)
+/* The name of a tile, up to its ending. */
+static void write_name(char *to, size_t size, const struct cdb_tile *t)
 {
-    char latitude[4], longitude[5], level[4];
+    snprintf(to, size, "%c%02d%c%03d_D%03d_S%03d_T%03d_L%s%02d_U%d_R%d",
+             t->latitude < 0 ? 'S' : 'N', abs(t->latitude), t->longitude < 0 ? 'W' : 'E',
+             abs(t->longitude), t->dataset, t->selector[0], t->selector[1], t->level < 0 ? "C" : "",
+             abs(t->level), t->up, t->right);
+}
+
+/* What scanf forgives, such as signs, blanks and missing digits, the last comparison does not. */
+bool cdb_tile_read_name(struct cdb_tile *t, const char *name)
+{
+    char latitude[4], longitude[5], level[4], whole[128];
     int end = 0;
-    if (sscanf(name, "%3[NS0-9]%4[EW0-9]_D%3d_S%3d_T%3d_L%3[C0-9]_U%d_R%d%n", latitude, longitude,
+    if (sscanf(name, "%3[NS0-9]%4[EW0-9]_D%3d_S%3d_T%3d_L%3[C0-9]_U%8d_R%8d%n", latitude, longitude,
                &t->dataset, &t->selector[0], &t->selector[1], level, &t->up, &t->right,
                &end) != 8 ||
         (name[end] != '.' && name[end] != '\0') ||
@@ -157,8 +166,13 @@ static bool read_name(const char *name, struct cdb_tile *t)
         !read_degrees(longitude, "EW", 180, &t->longitude) || !read_level(level, &t->level)) {
         return false;
     }
+    if (t->dataset < 0 || t->selector[0] < 0 || t->selector[1] < 0 || t->up < 0 || t->right < 0) {
+        return false;
+    }
+    write_name(whole, sizeof whole, t);
     const int across = t->level > 0 ? 1 << t->level : 1;
-    return t->up >= 0 && t->up < across && t->right >= 0 && t->right < across;
+    return strlen(whole) == (size_t)end && strncmp(name, whole, (size_t)end) == 0 &&
+           t->up < across && t->right < across;
 }
 
 struct cdb_area cdb_tile_area(const struct cdb_tile *t)
@@ -214,7 +228,7 @@ static int find_in_folder(struct visual_cdb *cdb, const struct finding *f,
             continue;
         }
         const int length = snprintf(t.path, sizeof t.path, "%s/%s", folder, names[i]);
-        if (length >= (int)sizeof t.path || !read_name(slash ? slash + 1 : names[i], &t) ||
+        if (length >= (int)sizeof t.path || !cdb_tile_read_name(&t, slash ? slash + 1 : names[i]) ||
             t.dataset != f->dataset || t.latitude != at->latitude || t.longitude != at->longitude) {
             cdb->strangers++;
             continue;

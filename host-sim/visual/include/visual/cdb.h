@@ -61,6 +61,10 @@ int visual_cdb_open(struct visual_cdb *cdb, const char *root, const struct cdb_a
  * Returns 0, or -1 with the error reported: no memory. */
 int visual_cdb_tiles(struct visual_cdb *cdb, struct cdb_tiles *tiles, int dataset,
                      const char *endings);
+/* Read the name of a tile's file, "N32W118_D004_S001_T001_L02_U2_R3.jp2", into all of `t` but its
+ * path. False for every other name: a tile outside the world, its geocell or the levels, digits too
+ * few or too many. */
+bool cdb_tile_read_name(struct cdb_tile *t, const char *name);
 /* The area of a tile. */
 struct cdb_area cdb_tile_area(const struct cdb_tile *t);
 /* Harmless on a zeroed struct. */
