@@ -2,7 +2,7 @@
 # A library sees earlier lines only, so that the arrows cannot run in a circle.
 $(call host_library, lib,          fixed firmware,                                      libpng)
 $(call host_library, gis,          lib,                                                 gdal proj)
-$(call host_library, image,        lib fixed firmware)
+$(call host_library, image,        lib fixed firmware,                                  liblz4)
 $(call host_library, radar,        lib fixed firmware)
 $(call host_library, classify,     gis lib,                                             openblas)
 $(call host_library, resample,     image gis lib fixed firmware)
@@ -18,7 +18,7 @@ $(call host_library, netem,        tracer gis lib fixed firmware,               
 $(call host_library, nav,          lib,                                                 proj expat zlib libzip)
 $(call host_library, bus,          lib fixed firmware drivers)
 $(call host_library, scene,        lib,                                                 gdal)
-$(call host_library, reference,    lib fixed firmware.h)
+$(call host_library, reference,    lib fixed firmware.h,                                liblz4)
 $(call host_library, sim,          lib fixed firmware,                                  sdl2)
 $(call host_library, tables,       lib fixed firmware.h)
 

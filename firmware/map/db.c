@@ -346,6 +346,13 @@ static bool detail_is_sound(const struct lm_db *db, const struct lm_tile_entry *
                : e->detail_size > 0 && lies_in(e->detail_place, e->detail_size, db->detail_size);
 }
 
+/* A compressed record is shorter than a raw one: it is unpacked in the memory of its tile. */
+static bool has_sound_size(const struct lm_tile_entry *e)
+{
+    enum { RAW_SIZE = LM_TILE_BYTES / LM_DB_PLACE_BYTES };
+    return e->encoding == LM_TILE_RAW ? e->size == RAW_SIZE : e->size > 0 && e->size < RAW_SIZE;
+}
+
 int lm_db_entry_check(const struct lm_db *db, uint32_t number, const struct lm_tile_entry *entry)
 {
     const uint32_t crc = fx_crc32c(0, &number, sizeof number);
@@ -355,10 +362,10 @@ int lm_db_entry_check(const struct lm_db *db, uint32_t number, const struct lm_t
     if (entry->place == LM_TILE_ABSENT) {
         return LM_OK;
     }
-    if (entry->encoding != LM_TILE_RAW) {
+    if (entry->encoding != LM_TILE_RAW && entry->encoding != LM_TILE_LZ4) {
         return LM_ERR_VERSION;
     }
-    const bool is_sound = entry->size == LM_TILE_BYTES / LM_DB_PLACE_BYTES &&
+    const bool is_sound = has_sound_size(entry) &&
                           lies_in(entry->place, entry->size, db->tiles_size) &&
                           detail_is_sound(db, entry);
     return is_sound ? LM_OK : LM_ERR_CORRUPT;

@@ -151,12 +151,14 @@ static void take_entry(struct lm_tile_cache *c)
         c->is_reading_entry = false;
         c->slots[c->reading_slot].detail_place = entry->detail_place;
         c->slots[c->reading_slot].detail_size = entry->detail_size;
-        start_read(c, lm_db_tile_offset(c->db, entry), &c->pool[c->reading_slot], LM_TILE_BYTES);
+        start_read(c, lm_db_tile_offset(c->db, entry),
+                   lm_tile_unpack_place(&c->pool[c->reading_slot], entry->size),
+                   (uint32_t)LM_DB_PLACE_BYTES * entry->size);
     }
 }
 
-/* The record was read: make it resident if it passes its check. */
-static void take_record(struct lm_tile_cache *c)
+/* The tile is whole: make it resident if it passes its check. */
+static void take_tile(struct lm_tile_cache *c)
 {
     const struct lm_tile_slot *s = &c->slots[c->reading_slot];
     if (lm_tile_check(&c->pool[c->reading_slot], s->lod, s->row, s->column) != LM_OK) {
@@ -166,6 +168,28 @@ static void take_record(struct lm_tile_cache *c)
     c->count.tiles_read++;
     c->slots[c->reading_slot].base = lm_tile_base_of(c->pool, &c->pool[c->reading_slot]);
     finish(c, LM_SLOT_RESIDENT);
+}
+
+/* Go on with a compressed record after a part of its unpacking, or its begin. */
+static void go_on_unpacking(struct lm_tile_cache *c, int status)
+{
+    c->is_unpacking = status == LM_BUSY;
+    if (status == LM_OK) {
+        take_tile(c);
+    } else if (status != LM_BUSY) {
+        fail(c, &c->count.corrupt);
+    }
+}
+
+/* The record was read. */
+static void take_record(struct lm_tile_cache *c)
+{
+    if (c->entry.encoding == LM_TILE_RAW) {
+        take_tile(c);
+    } else {
+        go_on_unpacking(c,
+                        lm_tile_unpack_begin(&c->unpack, &c->pool[c->reading_slot], c->entry.size));
+    }
 }
 
 bool lm_tile_cache_read(struct lm_tile_cache *c, struct lm_flash_request *request)
@@ -239,6 +263,10 @@ void lm_tile_cache_service(struct lm_tile_cache *c, uint64_t now_us, uint32_t re
             if (!start_pending(c)) {
                 return;
             }
+            continue;
+        }
+        if (c->is_unpacking) {
+            go_on_unpacking(c, lm_tile_unpack_run(&c->unpack));
             continue;
         }
         const int status = flash->read_poll(flash->ctx);

@@ -84,6 +84,7 @@ void image_close(struct image *image)
     if (image->is_mapped) {
         munmap((void *)image->bytes, image->size_bytes);
     }
+    image_unpacked_free(image->unpacked);
     *image = (struct image){0};
 }
 
@@ -277,7 +278,6 @@ static void fill_db(struct image *image)
     memcpy(image->db.bands, image->bytes + image->sections[LM_IMAGE_BANDS]->offset,
            h->band_count * sizeof(struct lm_band));
     image->entries = (const void *)(image->bytes + image->db.directory_offset);
-    image->tiles = (const void *)(image->bytes + image->db.records_offset);
 }
 
 /* The head of the targets says how many there are. */
@@ -386,6 +386,23 @@ static void read_radar(struct image *image, struct image_findings *f)
     }
 }
 
+/* Compressed records need room to be unpacked; an image that has none does without. */
+static int make_room(struct image *image, struct image_findings *f)
+{
+    bool is_needed = false;
+    for (uint32_t i = 0; i < image->header.entry_count; i++) {
+        is_needed = is_needed || image->entries[i].encoding == LM_TILE_LZ4;
+    }
+    if (!is_needed || image->unpacked) {
+        return 0;
+    }
+    image->unpacked = image_unpacked_new(image->header.entry_count);
+    if (!image->unpacked) {
+        image_find(f, image->db.records_offset, "not enough memory to unpack its tiles");
+    }
+    return image->unpacked ? 0 : -1;
+}
+
 int image_read_tables(struct image *image, struct image_findings *findings)
 {
     if (image->size_bytes < sizeof image->header) {
@@ -397,6 +414,9 @@ int image_read_tables(struct image *image, struct image_findings *findings)
         return -1;
     }
     fill_db(image);
+    if (make_room(image, findings) != 0) {
+        return -1;
+    }
     read_radar(image, findings);
     if (read_geoid(image, findings) != 0) {
         return -1;
@@ -432,7 +452,10 @@ const struct lm_tile *image_entry_tile(const struct image *image, uint32_t entry
     if (lm_db_entry_check(&image->db, entry, e) != LM_OK || e->place == LM_TILE_ABSENT) {
         return NULL;
     }
-    return (const void *)(image->bytes + image_record_offset(image, entry));
+    const uint8_t *record = image->bytes + image_record_offset(image, entry);
+    return e->encoding == LM_TILE_RAW
+               ? (const void *)record
+               : image_unpacked_tile(image->unpacked, entry, record, e->size);
 }
 
 const struct lm_tile *image_find_tile(const struct image *image, uint8_t level, uint32_t row,

@@ -2,6 +2,7 @@
 
 #include "fx/crc32c.h"
 #include "hs/progress.h"
+#include "hs/zero_bytes.h"
 #include "image/border.h"
 #include "image/codes.h"
 #include "image/grid.h"
@@ -207,7 +208,7 @@ static bool check_entry(struct verify *v, uint32_t number)
         }
         return false;
     }
-    if (e->encoding != LM_TILE_RAW) {
+    if (e->encoding != LM_TILE_RAW && e->encoding != LM_TILE_LZ4) {
         image_find(v->findings, at, "entry %" PRIu32 ": encoding %u is not known here", number,
                    e->encoding);
         return false;
@@ -215,8 +216,7 @@ static bool check_entry(struct verify *v, uint32_t number)
     if (lm_db_entry_check(&image->db, number, e) != LM_OK) {
         image_find(v->findings, at,
                    "entry %" PRIu32 ": %u units from %" PRIu32
-                   " are no raw record inside TILES, "
-                   "or its detail lies outside DETAIL",
+                   " are no record inside TILES, or its detail lies outside DETAIL",
                    number, e->size, e->place);
         return false;
     }
@@ -306,7 +306,7 @@ static int count_bad_cells(const struct image *image, const struct lm_tile *t)
 
 static bool tile_reserved_is_zero(const struct lm_tile *t)
 {
-    uint32_t any = t->reserved0 | (uint32_t)t->reserved1;
+    uint32_t any = t->reserved0 | (uint32_t)t->reserved1 | t->block_bytes;
     for (size_t i = 0; i < sizeof t->reserved2; i++) {
         any |= t->reserved2[i];
     }
@@ -314,6 +314,30 @@ static bool tile_reserved_is_zero(const struct lm_tile *t)
         any |= t->reserved3[i];
     }
     return any == 0;
+}
+
+/* A compressed record is its head, zeros, and the block; it has no unit that only zeros fill. */
+static void check_stored(struct verify *v, uint32_t number)
+{
+    const struct image *image = v->image;
+    const struct lm_tile_entry *e = &image->entries[number];
+    const uint64_t at = image_record_offset(image, number);
+    const uint32_t head_bytes = offsetof(struct lm_tile, points);
+    const uint32_t bytes = e->size * (uint32_t)LM_DB_PLACE_BYTES - head_bytes;
+    struct lm_tile head;
+    if (e->encoding == LM_TILE_RAW) {
+        return;
+    }
+    memcpy(&head, image->bytes + at, head_bytes);
+    if (head.block_bytes > bytes || bytes - head.block_bytes >= LM_DB_PLACE_BYTES) {
+        image_find(v->findings, at,
+                   "tile of entry %" PRIu32
+                   ": its block has not the length of "
+                   "its record",
+                   number);
+    } else if (!db_is_zero(image->bytes + at + head_bytes, bytes - head.block_bytes)) {
+        image_find(v->findings, at, "tile of entry %" PRIu32 ": unused bytes are not zero", number);
+    }
 }
 
 /* What the record says of itself. Returns whether its identity can be used further on. */
@@ -477,8 +501,8 @@ static void check_border(struct verify *v, uint32_t number, const struct lm_tile
 
 /* A tile of the pyramid, as it is made from those below it. */
 struct rung {
-    const struct lm_tile *tile;
-    uint32_t number; /* of its entry */
+    struct lm_tile tile; /* a copy: the reader keeps only so many */
+    uint32_t number;     /* of its entry */
     struct image_ground ground;
     int32_t posts_q6[LM_TILE_POSTS][LM_TILE_POSTS]; /* as they should be */
 };
@@ -488,10 +512,10 @@ static bool posts_fit(const struct rung *made, const struct lm_tile *below, int 
 {
     enum { HALF = LM_TILE_CELLS / 2 };
     const int row = quarter / 2 * HALF, column = quarter % 2 * HALF;
-    const int64_t step = coarser_step(made->tile, below);
+    const int64_t step = coarser_step(&made->tile, below);
     for (int r = 0; r <= HALF; r++) {
         for (int c = 0; c <= HALF; c++) {
-            const int64_t difference = image_post_q6(made->tile, row + r, column + c) -
+            const int64_t difference = image_post_q6(&made->tile, row + r, column + c) -
                                        made->posts_q6[row + r][column + c];
             if (difference < -step || difference > step) {
                 return false;
@@ -507,12 +531,12 @@ static void make_posts(struct rung *made, struct rung *const below[4])
     enum { HALF = LM_TILE_CELLS / 2 };
     int32_t fine[4][LM_TILE_POSTS][LM_TILE_POSTS];
     const int32_t(*posts[4])[LM_TILE_POSTS] = {NULL, NULL, NULL, NULL};
-    image_posts_decode(made->tile, made->posts_q6);
+    image_posts_decode(&made->tile, made->posts_q6);
     for (int i = 0; i < 4; i++) {
         if (!below[i]) {
             continue;
         }
-        image_posts_decode(below[i]->tile, fine[i]);
+        image_posts_decode(&below[i]->tile, fine[i]);
         posts[i] = (const int32_t(*)[LM_TILE_POSTS])fine[i];
         for (int k = 0; k < (HALF + 1) * (HALF + 1); k++) {
             const int r = k / (HALF + 1), c = k % (HALF + 1);
@@ -528,7 +552,7 @@ static bool cells_fit(const struct rung *made, const struct lm_tile *encoded, in
     const int row = quarter / 2 * HALF, column = quarter % 2 * HALF;
     for (int i = 0; i < HALF * HALF; i++) {
         const int r = row + i / HALF, c = column + i % HALF;
-        if (image_tile_cell(made->tile, r, c) != image_tile_cell(encoded, r, c)) {
+        if (image_tile_cell(&made->tile, r, c) != image_tile_cell(encoded, r, c)) {
             return false;
         }
     }
@@ -545,10 +569,10 @@ static int check_below(struct verify *v, struct rung *made, struct rung *const b
     if (!encoded) {
         return -1;
     }
-    *encoded = *made->tile;
+    *encoded = made->tile;
     for (int i = 0; i < 4; i++) {
         if (below[i]) {
-            image_ground_take(&made->ground, made->tile, &below[i]->ground, i, classes);
+            image_ground_take(&made->ground, &made->tile, &below[i]->ground, i, classes);
         }
     }
     image_ground_encode(&made->ground, encoded, classes->height_dm);
@@ -558,7 +582,7 @@ static int check_below(struct verify *v, struct rung *made, struct rung *const b
             continue;
         }
         v->counts->children++;
-        if (!posts_fit(made, below[i]->tile, i) || !cells_fit(made, encoded, i)) {
+        if (!posts_fit(made, &below[i]->tile, i) || !cells_fit(made, encoded, i)) {
             image_find(v->findings, image_record_offset(v->image, below[i]->number),
                        "tile of entry %" PRIu32 ": the tile above it does not hold its mean",
                        below[i]->number);
@@ -570,7 +594,7 @@ static int check_below(struct verify *v, struct rung *made, struct rung *const b
 
 static int climb_to(struct verify *v, struct rung *made)
 {
-    const struct lm_tile *t = made->tile;
+    const struct lm_tile *t = &made->tile;
     struct rung *below[4] = {NULL, NULL, NULL, NULL};
     int result = 0;
     image_cells_decode(t, made->ground.cells);
@@ -601,7 +625,7 @@ static int climb(struct verify *v, int level, uint32_t row, uint32_t column, str
     if (!made) {
         return -1;
     }
-    made->tile = t;
+    made->tile = *t;
     made->number = (uint32_t)lm_db_entry(&v->image->db, (uint8_t)level, row, column);
     *out = made;
     return climb_to(v, made);
@@ -639,6 +663,7 @@ static void check_tiles(struct verify *v)
         const uint32_t number = v->entries[i];
         const struct lm_tile *t = image_entry_tile(v->image, number);
         v->counts->tiles++;
+        check_stored(v, number);
         if (check_tile(v, number, t)) {
             check_east_edge(v, number, t);
             check_north_edge(v, number, t);

@@ -74,8 +74,10 @@ static int read_header(struct conversion *c)
         return hs_error(c->name, "give an image that `landmass-db build` wrote", "is no image");
     }
     if (hs_get_u32(h + 8) == LM_DB_VERSION) {
-        return hs_error(c->name, "use it as it is", "is an image of version %d already",
-                        LM_DB_VERSION);
+        return hs_error(c->name,
+                        "use it as it is, or say by --compress how its tiles shall be "
+                        "stored",
+                        "is an image of version %d already", LM_DB_VERSION);
     }
     if (hs_get_u32(h + 8) != OLD_VERSION) {
         return hs_error(c->name, "build it again from its sources",
@@ -352,7 +354,7 @@ static void take_extras(struct conversion *c)
     memcpy(h->title, c->header.title, sizeof h->title);
 }
 
-static int write_image(struct conversion *c, const char *path)
+static int write_image(struct conversion *c, enum image_compression how, const char *path)
 {
     const struct lm_image_header header = {.shift0 = c->header.shift0,
                                            .lod_count = c->header.lod_count,
@@ -367,12 +369,14 @@ static int write_image(struct conversion *c, const char *path)
         return -1;
     }
     take_extras(c);
+    c->writer.compression = how;
     const int result = image_writer_end(&c->writer, manifest);
     free(manifest);
     return result;
 }
 
-int image_version2_convert(const uint8_t *bytes, uint64_t size, const char *name, const char *path)
+int image_version2_convert(const uint8_t *bytes, uint64_t size, const char *name,
+                           enum image_compression how, const char *path)
 {
     struct conversion *c = calloc(1, sizeof *c);
     if (!c) {
@@ -382,7 +386,7 @@ int image_version2_convert(const uint8_t *bytes, uint64_t size, const char *name
     c->bytes = bytes;
     c->size = size;
     const bool is_read = read_header(c) == 0 && read_sections(c) == 0 && check_bands(c) == 0;
-    const int result = is_read ? write_image(c, path) : -1;
+    const int result = is_read ? write_image(c, how, path) : -1;
     free(c);
     return result;
 }

@@ -4,6 +4,7 @@
 
 #include "fx/crc32c.h"
 #include "hs/error.h"
+#include "hs/progress.h"
 
 #include <errno.h>
 #include <stdlib.h>
@@ -85,9 +86,9 @@ int image_writer_begin(struct image_writer *w, const char *path,
     place_sections(w);
     image_sha256_begin(&w->tiles_sha256);
     w->records = malloc((size_t)header->entry_count * sizeof *w->records);
-    w->entry_of = malloc((size_t)header->entry_count * sizeof *w->entry_of);
+    w->stored = malloc((size_t)header->entry_count * sizeof *w->stored);
     w->details = calloc(header->entry_count + 1u, sizeof *w->details);
-    if (!w->records || !w->entry_of || !w->details) {
+    if (!w->records || !w->stored || !w->details) {
         image_writer_abort(w);
         return hs_error(path, "choose larger cells or a smaller area", "out of memory");
     }
@@ -101,7 +102,6 @@ int image_writer_begin(struct image_writer *w, const char *path,
 
 int image_writer_tile(struct image_writer *w, uint32_t entry, const struct lm_tile *tile)
 {
-    w->entry_of[w->header.record_count] = entry;
     w->records[entry] = w->header.record_count++;
     return put(w, tile, LM_TILE_BYTES);
 }
@@ -133,17 +133,19 @@ static int put_section(struct image_writer *w, struct lm_image_section *s, const
 static int put_directory(struct image_writer *w, FILE *manifest)
 {
     const uint32_t count = w->header.entry_count;
-    enum { RECORD_SIZE = LM_TILE_BYTES / LM_DB_PLACE_BYTES };
+    enum { RAW_SIZE = LM_TILE_BYTES / LM_DB_PLACE_BYTES };
     struct lm_tile_entry *entries = malloc(count * sizeof *entries);
     if (!entries) {
         return hs_error(w->file.path, "choose larger cells or a smaller area", "out of memory");
     }
     for (uint32_t i = 0; i < count; i++) {
         const bool has_tile = w->records[i] != LM_TILE_ABSENT;
+        const struct image_stored_place none = {LM_TILE_ABSENT, 0};
+        const struct image_stored_place at = has_tile ? w->stored[w->records[i]] : none;
         entries[i] = (struct lm_tile_entry){
-            .place = has_tile ? w->records[i] * RECORD_SIZE : LM_TILE_ABSENT,
-            .size = has_tile ? RECORD_SIZE : 0,
-            .encoding = LM_TILE_RAW,
+            .place = at.place,
+            .size = at.size,
+            .encoding = has_tile && at.size != RAW_SIZE ? LM_TILE_LZ4 : LM_TILE_RAW,
             .detail_place = w->details[i].size ? w->details[i].place : LM_TILE_ABSENT,
             .detail_size = w->details[i].size,
         };
@@ -159,6 +161,8 @@ struct mapped_tiles {
     struct image_writer *w;
     struct lm_db db; /* grid and bands alone */
     struct lm_tile *tiles;
+    uint8_t *map;
+    size_t map_bytes;
 };
 
 static const struct lm_tile *find_written(void *ctx, uint8_t lod, uint32_t row, uint32_t column)
@@ -169,26 +173,52 @@ static const struct lm_tile *find_written(void *ctx, uint8_t lod, uint32_t row, 
     return record == LM_TILE_ABSENT ? NULL : &m->tiles[record];
 }
 
+enum { RELEASE_RECORDS = 4096 }; /* 72 MB: what the process holds of the file at a time */
+
 /* A border takes nothing but own points of neighbours, and leaves those as they are: the order of
  * the tiles does not matter. */
-static void fill_and_seal(struct mapped_tiles *m, uint8_t *map, size_t map_bytes)
+static void fill_and_seal(struct mapped_tiles *m)
 {
-    enum { RELEASE_RECORDS = 4096 }; /* 72 MB: what the process holds of the file at a time */
-    struct image_writer *w = m->w;
+    const struct image_writer *w = m->w;
     const struct image_neighbours n = {find_written, m, w->header.shift0};
     for (uint32_t i = 0; i < w->header.record_count; i++) {
         struct lm_tile *tile = &m->tiles[i];
-        image_border_fill(&n, tile);
+        if (!w->has_borders) {
+            image_border_fill(&n, tile);
+        }
         tile->crc = fx_crc32c(0, &tile->lod, LM_TILE_BYTES - sizeof tile->crc);
-        w->tiles_crc = fx_crc32c(w->tiles_crc, tile, LM_TILE_BYTES);
-        image_sha256_add(&w->tiles_sha256, tile, LM_TILE_BYTES);
         if (i % RELEASE_RECORDS == RELEASE_RECORDS - 1) {
-            (void)madvise(map, map_bytes, MADV_DONTNEED); /* a shared map loses nothing */
+            (void)madvise(m->map, m->map_bytes, MADV_DONTNEED); /* a shared map loses nothing */
         }
     }
 }
 
-static int fill_borders(struct image_writer *w)
+/* Put the records, as they are stored, one behind the other. None becomes longer, so that each goes
+ * where records lie that have been moved already, or stays. */
+static void pack(struct mapped_tiles *m)
+{
+    struct image_writer *w = m->w;
+    uint8_t record[LM_TILE_BYTES];
+    struct hs_progress progress;
+    hs_progress_begin(&progress, "storing tiles", w->header.record_count);
+    w->tiles_size = 0;
+    for (uint32_t i = 0; i < w->header.record_count; i++) {
+        const uint16_t size = image_pack(&m->tiles[i], w->compression, record);
+        const size_t bytes = (size_t)size * LM_DB_PLACE_BYTES;
+        w->stored[i] = (struct image_stored_place){w->tiles_size, size};
+        memcpy((uint8_t *)m->tiles + (size_t)w->tiles_size * LM_DB_PLACE_BYTES, record, bytes);
+        w->tiles_size += size;
+        w->tiles_crc = fx_crc32c(w->tiles_crc, record, bytes);
+        image_sha256_add(&w->tiles_sha256, record, bytes);
+        if (i % RELEASE_RECORDS == RELEASE_RECORDS - 1) {
+            (void)madvise(m->map, m->map_bytes, MADV_DONTNEED);
+        }
+        hs_progress_update(&progress, i + 1);
+    }
+    hs_progress_end(&progress);
+}
+
+static int finish_tiles(struct image_writer *w)
 {
     struct mapped_tiles m = {.w = w,
                              .db = {.lod_count = w->header.lod_count,
@@ -205,15 +235,18 @@ static int fill_borders(struct image_writer *w)
     if (fflush(w->file.stream) != 0) {
         return write_failed(w);
     }
-    uint8_t *map = mmap(NULL, bytes, PROT_READ | PROT_WRITE, MAP_SHARED, fileno(w->file.stream),
-                        (off_t)(offset - page));
-    if (map == MAP_FAILED) {
+    m.map_bytes = bytes;
+    m.map = mmap(NULL, bytes, PROT_READ | PROT_WRITE, MAP_SHARED, fileno(w->file.stream),
+                 (off_t)(offset - page));
+    if (m.map == MAP_FAILED) {
         return write_failed(w);
     }
-    m.tiles = (void *)(map + page);
-    fill_and_seal(&m, map, bytes);
-    munmap(map, bytes);
-    return 0;
+    m.tiles = (void *)(m.map + page);
+    fill_and_seal(&m);
+    pack(&m);
+    munmap(m.map, bytes);
+    const off_t end = (off_t)(offset + (uint64_t)w->tiles_size * LM_DB_PLACE_BYTES);
+    return ftruncate(fileno(w->file.stream), end) == 0 ? 0 : write_failed(w);
 }
 
 static int put_tables(struct image_writer *w, FILE *manifest)
@@ -228,7 +261,9 @@ static int put_tables(struct image_writer *w, FILE *manifest)
     image_sha256_end(&w->tiles_sha256, digest);
     fprintf(manifest, "section-sha256: TILES %s\n", digest);
     tiles->crc = w->tiles_crc;
-    tiles->bytes = (uint64_t)w->header.record_count * LM_TILE_BYTES;
+    tiles->bytes = (uint64_t)w->tiles_size * LM_DB_PLACE_BYTES;
+    fprintf(manifest, "records: %s\n",
+            w->compression == IMAGE_COMPRESSION_LZ4 ? image_pack_encoder() : "raw");
     return 0;
 }
 
@@ -268,6 +303,14 @@ static int put_header(struct image_writer *w)
 
 static int finish(struct image_writer *w, const char *manifest)
 {
+    const struct {
+        enum lm_image_section_type type;
+        const struct image_bytes *bytes;
+    } extras[] = {
+        {LM_IMAGE_TARGETS, &w->targets}, {LM_IMAGE_SIGNATURES, &w->signatures},
+        {LM_IMAGE_GEOID, &w->geoid},     {LM_IMAGE_DETAIL, &w->detail},
+        {LM_IMAGE_RADAR, &w->radar},
+    };
     char *text = NULL;
     size_t bytes = 0;
     FILE *stream = open_memstream(&text, &bytes);
@@ -275,23 +318,11 @@ static int finish(struct image_writer *w, const char *manifest)
         return hs_error(w->file.path, NULL, "out of memory");
     }
     fputs(manifest, stream);
-    int result = fill_borders(w) == 0 ? put_tables(w, stream) : -1;
+    int result = finish_tiles(w) == 0 ? put_tables(w, stream) : -1;
     const struct lm_image_section *tiles = section(w, LM_IMAGE_TILES);
     uint64_t end = tiles->offset + tiles->bytes;
-    if (result == 0) {
-        result = put_extra(w, LM_IMAGE_TARGETS, &w->targets, stream, &end);
-    }
-    if (result == 0) {
-        result = put_extra(w, LM_IMAGE_SIGNATURES, &w->signatures, stream, &end);
-    }
-    if (result == 0) {
-        result = put_extra(w, LM_IMAGE_GEOID, &w->geoid, stream, &end);
-    }
-    if (result == 0) {
-        result = put_extra(w, LM_IMAGE_DETAIL, &w->detail, stream, &end);
-    }
-    if (result == 0) {
-        result = put_extra(w, LM_IMAGE_RADAR, &w->radar, stream, &end);
+    for (size_t i = 0; i < sizeof extras / sizeof extras[0] && result == 0; i++) {
+        result = put_extra(w, extras[i].type, extras[i].bytes, stream, &end);
     }
     if (fclose(stream) != 0) {
         result = hs_error(w->file.path, NULL, "out of memory");
@@ -316,8 +347,9 @@ void image_writer_abort(struct image_writer *w)
 {
     hs_atomic_abort(&w->file);
     free(w->records);
-    free(w->entry_of);
+    free(w->stored);
     free(w->details);
-    w->records = w->entry_of = NULL;
+    w->records = NULL;
+    w->stored = NULL;
     w->details = NULL;
 }

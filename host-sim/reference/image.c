@@ -4,6 +4,7 @@
 #include "hs/input_file.h"
 #include "hs/little_endian.h"
 #include "reference/reference.h"
+#include "unpack.h"
 
 #include <errno.h>
 #include <math.h>
@@ -179,7 +180,8 @@ static int open_bytes(struct ref_db *db, const char *name)
 {
     if (read_header(db, name) == 0 && find_sections(db, name) == 0 && find_geoid(db, name) == 0) {
         db->verdicts = calloc((size_t)db->entry_count + 1, 1);
-        if (db->verdicts != NULL) {
+        db->unpacked = calloc((size_t)db->entry_count + 1, sizeof(struct lm_tile *));
+        if (db->verdicts != NULL && db->unpacked != NULL) {
             return 0;
         }
         hs_error(name, NULL, "not enough memory");
@@ -232,6 +234,10 @@ void ref_db_close(struct ref_db *db)
 {
     free(db->bytes);
     free(db->verdicts);
+    for (uint32_t i = 0; db->unpacked != NULL && i < db->entry_count; i++) {
+        free(db->unpacked[i]);
+    }
+    free(db->unpacked);
     *db = (struct ref_db){0};
 }
 
@@ -282,6 +288,23 @@ static struct grid_place locate(const struct ref_db *db, unsigned level, struct 
     return g;
 }
 
+/* The tile of a compressed record, kept from then on; NULL if it cannot be unpacked or there is no
+ * memory. */
+static const struct lm_tile *unpacked_tile(const struct ref_db *db, uint32_t entry,
+                                           const uint8_t *record, uint32_t bytes)
+{
+    if (db->unpacked[entry] == NULL && db->verdicts[entry] == UNKNOWN) {
+        struct lm_tile *tile = malloc(sizeof *tile);
+        if (tile == NULL || !ref_unpack(record, bytes, tile)) {
+            db->verdicts[entry] = BAD;
+            free(tile);
+            return NULL;
+        }
+        db->unpacked[entry] = tile;
+    }
+    return db->unpacked[entry];
+}
+
 static bool is_good_record(const struct ref_db *db, uint32_t entry, const struct lm_tile *tile)
 {
     if (db->verdicts[entry] == UNKNOWN) {
@@ -303,12 +326,18 @@ static const struct lm_tile *entry_tile(const struct ref_db *db, uint32_t entry,
     const uint32_t place = hs_get_u32(at);
     const uint32_t size = (uint32_t)(at[4] | at[5] << 8);
     const bool is_raw = at[6] == 0 && size * UNIT_BYTES == LM_TILE_BYTES;
+    const bool is_packed = at[6] == 1 && size > 0 && size * UNIT_BYTES < LM_TILE_BYTES;
     if (hs_get_u32(at + ENTRY_CRC_AT) != fx_crc32c(0, checked, sizeof checked) ||
-        place == UINT32_MAX || !is_raw || ((uint64_t)place + size) * UNIT_BYTES > db->tiles_bytes) {
+        place == UINT32_MAX || !(is_raw || is_packed) ||
+        ((uint64_t)place + size) * UNIT_BYTES > db->tiles_bytes) {
         return NULL;
     }
-    const struct lm_tile *tile =
-        (const struct lm_tile *)(const void *)(db->records + (size_t)place * UNIT_BYTES);
+    const uint8_t *record = db->records + (size_t)place * UNIT_BYTES;
+    const struct lm_tile *tile = is_raw ? (const struct lm_tile *)(const void *)record
+                                        : unpacked_tile(db, entry, record, size * UNIT_BYTES);
+    if (tile == NULL) {
+        return NULL;
+    }
     const bool is_asked_for = tile->lod == level && tile->zone == g->zone && tile->row == g->row &&
                               tile->column == g->column;
     return is_good_record(db, entry, tile) && is_asked_for && tile->post_shift <= POST_SHIFT_MAX

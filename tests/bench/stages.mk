@@ -3,4 +3,4 @@ PROGRAMS += $(STAGE_BENCH)
 $(O)/tests/bench/stage_bench.o: CFLAGS_host += -Itests/golden
 $(STAGE_BENCH): $(O)/tests/bench/stage_bench.o $(O)/tests/golden/golden_signature.o \
     $(LIB_support) $(LIB_reference) $(LIB_hs) $(LIB_firmware) $(LIB_fixed)
-$(STAGE_BENCH): LDLIBS := $(call pkgs,libs,libpng)
+$(STAGE_BENCH): LDLIBS := $(call host_links,reference)

@@ -69,8 +69,6 @@ $(call unit_tests, host-sim/programs/netem,     netem tracer lib fixed firmware,
 $(call unit_tests, host-sim/programs/scene,     lib,                                  scene,        gdal)
 $(call unit_tests, host-sim/programs/figures,   lib,                                  figures)
 
-$(UNIT)/firmware/map/test_lz4: LDLIBS += $(call pkgs,libs,liblz4)
-
 # Where a system call or the clock is a fake, the linker leads the driver's calls to it.
 WRAP = $(1:%=-Wl,--wrap=%)
 $(UNIT)/drivers/display/test_drm:     LDLIBS += $(call WRAP,open close ioctl read mmap munmap)

@@ -29,6 +29,7 @@ struct settings {
     double cell_m;
     long shift0, seed;
     const char *centre, *title, *out;
+    int compression;        /* enum image_compression */
     int sensor;             /* enum hs_sensor; -1: as the reflectivity says, or X */
     uint32_t centre_bam[2]; /* latitude, longitude; when `centre` is given */
     const char *land_class, *water_class, *steep_class;
@@ -91,6 +92,8 @@ static bool read_settings(struct settings *s, int argc, char **argv, int *exit_c
         OPTION("radar", HS_INPUT, radar, 0, 0, "FILE",
                "table of the radar that shall look at the image, a text (landmass-radar)\nleft "
                "out: the display uses its own"),
+        OPTION("compress", HS_CHOICE, compression, 0, 0, IMAGE_COMPRESSION_WORDS,
+               "how tiles are stored; none: larger, and the display unpacks nothing"),
         OPTION("sensor", HS_CHOICE, sensor, 0, 0, HS_SENSOR_WORDS,
                "what the image is for: a radar of that band, or the infrared\nleft out: what the "
                "reflectivity was made for, or the band of --radar, or x"),
@@ -731,6 +734,7 @@ static int write_image(struct build_context *b, const struct settings *s, const 
     fill_header(&w.header, b, s, centre);
     set_town_gains(b);
     w.classes = b->classes;
+    w.compression = (enum image_compression)s->compression;
     w.targets = (struct image_bytes){extras->targets_bytes, extras->targets_size};
     w.signatures = (struct image_bytes){extras->signatures_bytes, extras->signatures_size};
     w.geoid = (struct image_bytes){b->geoid.rows > 0 ? &b->geoid : NULL, sizeof b->geoid};
@@ -762,7 +766,6 @@ static void report_level(int level, double cell_m, uint32_t tiles)
     hs_report_put("level", level);
     hs_report_put("cell_m", cell_m);
     hs_report_put("tiles", tiles);
-    hs_report_put("bytes", (uint64_t)tiles * LM_TILE_BYTES);
     hs_report_close();
 }
 
@@ -771,8 +774,8 @@ static void print_levels(const struct build_context *b, const struct report *r)
     hs_report_array("levels");
     for (int level = 0; level < b->plan.level_count; level++) {
         const double cell_m = ldexp(IMAGE_METRES_PER_BAM, b->plan.shift0 + level);
-        printf("level %-2d cell %8.2f m  %7" PRIu32 " tiles  %12" PRIu64 " bytes\n", level, cell_m,
-               r->levels.tiles[level], (uint64_t)r->levels.tiles[level] * LM_TILE_BYTES);
+        printf("level %-2d cell %8.2f m  %7" PRIu32 " tiles\n", level, cell_m,
+               r->levels.tiles[level]);
         report_level(level, cell_m, r->levels.tiles[level]);
     }
     hs_report_close();
@@ -938,6 +941,7 @@ int db_cmd_build(int argc, char **argv)
                          .water_class = "water",
                          .steep_degrees = 25.0,
                          .seed = 1,
+                         .compression = IMAGE_COMPRESSION_LZ4,
                          .sensor = -1};
     int exit_code;
     const bool goes_on = read_settings(&s, argc, argv, &exit_code);

@@ -129,36 +129,62 @@ static void print_bands(const struct image *image)
     hs_report_close();
 }
 
-static uint32_t count_tiles(const struct image *image, const struct lm_band *b)
+/* Tiles of a level, or of all, and how their records are stored. */
+struct stored {
+    uint32_t tiles, compressed;
+    uint64_t bytes;
+};
+
+static void count_tiles(const struct image *image, const struct lm_band *b, struct stored *n)
 {
-    uint32_t tiles = 0;
     const uint32_t end = b->entry0 + b->rows * b->columns;
     for (uint32_t entry = b->entry0; entry < end; entry++) {
-        tiles += image->entries[entry].place != LM_TILE_ABSENT;
+        const struct lm_tile_entry *e = &image->entries[entry];
+        if (e->place != LM_TILE_ABSENT) {
+            n->tiles++;
+            n->compressed += e->encoding == LM_TILE_LZ4;
+            n->bytes += (uint64_t)e->size * LM_DB_PLACE_BYTES;
+        }
     }
-    return tiles;
+}
+
+/* The directory counts as part of what a cell takes. */
+static void print_stored(const struct image *image, const struct stored *all)
+{
+    const double bytes =
+        (double)all->bytes + (double)image->header.entry_count * sizeof(struct lm_tile_entry);
+    const double bytes_a_cell = bytes / ((double)all->tiles * LM_TILE_CELLS * LM_TILE_CELLS);
+    printf("records         %" PRIu32 " compressed, %" PRIu32
+           " raw; %.3f bytes a cell with their "
+           "directory\n",
+           all->compressed, all->tiles - all->compressed, bytes_a_cell);
+    hs_report_put("compressed_records", all->compressed);
+    hs_report_put("bytes_a_cell", bytes_a_cell);
 }
 
 static void print_levels(const struct image *image)
 {
-    uint32_t tiles[LM_DB_LODS_MAX] = {0};
+    struct stored levels[LM_DB_LODS_MAX] = {{0}}, all = {0};
     for (uint32_t i = 0; i < image->header.band_count; i++) {
-        tiles[image->db.bands[i].lod] += count_tiles(image, &image->db.bands[i]);
+        const struct lm_band *b = &image->db.bands[i];
+        count_tiles(image, b, &levels[b->lod]);
+        count_tiles(image, b, &all);
     }
     printf("\nlevel     cell m       tiles         bytes\n");
     hs_report_array("levels");
     for (int level = 0; level < image->header.lod_count; level++) {
         const double cell_m = ldexp(IMAGE_METRES_PER_BAM, image->header.shift0 + level);
-        const uint64_t bytes = (uint64_t)tiles[level] * LM_TILE_BYTES;
-        printf("%5d %10.2f  %10" PRIu32 "  %12" PRIu64 "\n", level, cell_m, tiles[level], bytes);
+        const struct stored *n = &levels[level];
+        printf("%5d %10.2f  %10" PRIu32 "  %12" PRIu64 "\n", level, cell_m, n->tiles, n->bytes);
         hs_report_object(NULL);
         hs_report_put("level", level);
         hs_report_put("cell_m", cell_m);
-        hs_report_put("tiles", tiles[level]);
-        hs_report_put("bytes", bytes);
+        hs_report_put("tiles", n->tiles);
+        hs_report_put("bytes", n->bytes);
         hs_report_close();
     }
     hs_report_close();
+    print_stored(image, &all);
 }
 
 static void report_class(int number, const struct lm_class *c, const char *kind)

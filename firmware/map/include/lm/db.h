@@ -58,7 +58,8 @@ enum {
     LM_TILE_POST_SHIFT_MAX = 4, /* relief in one tile: 16.4 km */
     LM_DB_PLACE_BYTES = 64,     /* unit of places and sizes in the directory */
     LM_TILE_BYTES = 17472,      /* a raw record: 273 units */
-    LM_TILE_RAW = 0,            /* encoding of a record: the only one so far */
+    LM_TILE_RAW = 0,            /* encoding of a record: as in the cache */
+    LM_TILE_LZ4 = 1,            /* compressed: lm/tile_unpack.h */
     LM_FACINGS = 8,             /* facings of walls: struct lm_class */
     LM_TARGET_BYTES = 640,      /* a record of TARGETS: lm/target.h */
     LM_DB_TARGETS_MAX = 1024,
@@ -68,7 +69,8 @@ enum {
     LM_DB_CHIPS_MAX = LM_DB_SIGNATURES_MAX * 128 * 8
 };
 
-/* Tile record, in flash and in the cache alike: 17,472 bytes. */
+/* Tile record, in the cache and, where it is raw, in flash: 17,472 bytes. A compressed record has
+ * the same head, with the same checksum; then zeros, and a block that ends it. */
 struct lm_tile {
     uint32_t crc; /* CRC-32C of all bytes after this field */
     uint8_t lod, zone;
@@ -79,7 +81,8 @@ struct lm_tile {
     uint8_t reserved1;
     uint16_t under; /* cell that stands for structure cells where vector detail is drawn; height
                        code 0 */
-    uint8_t reserved2[8];
+    uint16_t block_bytes; /* of the block of a compressed record; 0 in a raw one and in the cache */
+    uint8_t reserved2[6];
     /* Row 0 is the southernmost, column 0 the westernmost. Rows and columns 1..64 are the tile's
      * own, the others repeat the neighbours': lm/tile_point.h. */
     struct lm_tile_point points[LM_TILE_POINTS][LM_TILE_POINTS];
@@ -92,7 +95,7 @@ _Static_assert(LM_TILE_BYTES % LM_DB_PLACE_BYTES == 0, "records are counted in t
 struct lm_tile_entry {
     uint32_t place;        /* of the record from the start of TILES; LM_TILE_ABSENT: no such tile */
     uint16_t size;         /* of the record. Places and sizes are in units of LM_DB_PLACE_BYTES */
-    uint8_t encoding;      /* of the record: LM_TILE_RAW */
+    uint8_t encoding;      /* of the record: LM_TILE_RAW or LM_TILE_LZ4 */
     uint8_t detail_size;   /* of the detail; 0 if there is none */
     uint32_t detail_place; /* from the start of DETAIL; LM_TILE_ABSENT: none */
     uint32_t crc;          /* CRC-32C of u32 entry number and the bytes before this field */
@@ -233,7 +236,7 @@ static inline uint64_t lm_db_entry_offset(const struct lm_db *db, uint32_t entry
 /* Check directory entry number `number` that was read from flash. Returns
  * - LM_OK: the tile is absent, or its record and its detail lie inside TILES and DETAIL.
  * - LM_ERR_CORRUPT: the checksum does not match this entry, a place or size reaches outside its
- *   section, or a raw record has not LM_TILE_BYTES.
+ *   section, a raw record has not LM_TILE_BYTES, or a compressed one is empty or no shorter.
  * - LM_ERR_VERSION: the record has an encoding that this firmware does not know. */
 int lm_db_entry_check(const struct lm_db *db, uint32_t number, const struct lm_tile_entry *entry);
 
@@ -249,7 +252,8 @@ static inline const struct lm_tile_point *lm_tile_origin(const struct lm_tile *t
     return &tile->points[LM_TILE_BORDER][LM_TILE_BORDER];
 }
 
-/* Check a tile record that was read from flash. Returns LM_OK, or LM_ERR_CORRUPT if
+/* Check a tile record that was read from flash, and unpacked if it was compressed. Returns LM_OK,
+ * or LM_ERR_CORRUPT if
  * - its checksum does not match,
  * - it is another tile than (lod, row, column),
  * - its base or post_shift is out of range, or `under` has a height.

@@ -23,7 +23,7 @@
  * Flow of a request:
  *
  *     lm_tile_cache_get, _want --> ring of requests --> lm_tile_cache_service --> slot
- *                                                         | entry, record
+ *                                                         | entry, record, unpacking
  *                                                         v
  *                                                       flash
  *
@@ -46,11 +46,12 @@
 
 #include "lm/config.h"
 #include "lm/db.h"
+#include "lm/tile_unpack.h"
 
 /* State of a slot. */
 enum lm_slot_state {
     LM_SLOT_FREE = 0,
-    LM_SLOT_READING,  /* its directory entry or its record is being read */
+    LM_SLOT_READING,  /* its directory entry or its record is being read, or unpacked */
     LM_SLOT_RESIDENT, /* checked and usable */
     LM_SLOT_ABSENT,   /* the image has no such tile; remembered to spare a read for each line */
     LM_SLOT_BAD       /* could not be read or checked; tried again after LM_TILE_RETRY_US */
@@ -112,6 +113,8 @@ struct lm_tile_cache {
     /* The read under way. */
     uint16_t reading_slot; /* LM_SLOT_NONE when idle */
     bool is_reading_entry; /* first the directory entry, then the record */
+    bool is_unpacking;     /* then, if the record is compressed, no read: it is being unpacked */
+    struct lm_tile_unpack unpack;
     uint32_t reading_entry;
     struct lm_tile_entry entry;
     struct lm_flash_request *request; /* borrowed while it waits or is being read; NULL if none */
@@ -220,9 +223,10 @@ void lm_tile_cache_want(struct lm_tile_cache *c, uint8_t lod, uint32_t row, uint
  * with nothing taken, while another request waits or is being read. */
 bool lm_tile_cache_read(struct lm_tile_cache *c, struct lm_flash_request *request);
 
-/* Continue reading, with at most `reads` polls or starts of the flash. Never waits. Tiles that
- * lm_tile_cache_get returned before may be evicted. Cost: the check of a record for each tile that
- * is complete, and a pass over the slots for each tile that is begun. */
+/* Continue reading, with at most `reads` polls or starts of the flash or parts of the unpacking of
+ * a compressed record. Never waits. Tiles that lm_tile_cache_get returned before may be evicted.
+ * Cost: the check of a record for each tile that is complete, a pass over the slots for each tile
+ * that is begun, and lm_tile_unpack_run for each part, which costs a third of a check. */
 void lm_tile_cache_service(struct lm_tile_cache *c, uint64_t now_us, uint32_t reads);
 
 /* True if no request waits and nothing is being read. */

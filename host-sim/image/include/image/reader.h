@@ -3,6 +3,7 @@
 #define IMAGE_READER_H
 
 #include "image/format.h"
+#include "image/unpacked.h"
 #include "lm/db.h"
 #include "lm/radar.h"
 #include "lm/signature.h"
@@ -35,7 +36,7 @@ struct image {
     bool has_radar;                        /* a section RADAR, whose table is sound */
     struct lm_radar radar;                 /* that table */
     const struct lm_tile_entry *entries;
-    const struct lm_tile *tiles; /* the first; the builder puts them one after the other */
+    struct image_unpacked *unpacked; /* owned; NULL for an image without compressed records */
     /* db.target_count, signature_count and chip_count of them, their contents not yet checked */
     const struct lm_target *targets;
     const struct lm_signature *signatures;
@@ -61,8 +62,11 @@ int image_open(struct image *image, const char *path);
 /* Unmap the file. What the pointers led to is gone; a lent image stays the caller's. */
 void image_close(struct image *image);
 
-/* The record of a directory entry, its bounds checked as lm_db_entry_check does and nothing else;
- * NULL when the image has no such tile or the entry is damaged. */
+/* The tile of a directory entry, its bounds checked as lm_db_entry_check does and nothing else;
+ * NULL when the image has no such tile or the entry is damaged. That of a raw record is valid until
+ * the image is closed, that of a compressed one until IMAGE_UNPACKED_TILES - 1 others have been
+ * asked for. One that cannot be unpacked is all zeros, which no check of a tile passes. One thread
+ * at a time may ask. */
 const struct lm_tile *image_entry_tile(const struct image *image, uint32_t entry);
 
 /* The same of the tile at a place of the grid. */

@@ -6,6 +6,7 @@
 
 #include "hs/atomic_file.h"
 #include "image/format.h"
+#include "image/pack.h"
 #include "image/sha256.h"
 
 #include <stdint.h>
@@ -22,16 +23,25 @@ struct image_detail_place {
     uint8_t size; /* 0: the tile has none */
 };
 
+/* Where a record lies in TILES, in units of LM_DB_PLACE_BYTES. */
+struct image_stored_place {
+    uint32_t place;
+    uint16_t size;
+};
+
 struct image_writer {
     struct hs_atomic_file file;
     struct lm_image_header header;
     struct lm_classes classes;
     struct lm_band bands[LM_DB_BANDS_MAX];
     uint32_t *records;                       /* record number of each directory entry; owned */
-    uint32_t *entry_of;                      /* and of each record its entry; owned */
+    struct image_stored_place *stored;       /* where each record lies in TILES; owned */
     struct image_detail_place *details;      /* and of each entry, where its detail lies; owned */
     struct image_bytes targets, signatures;  /* the sections; data NULL for an image without */
     struct image_bytes geoid, detail, radar; /* the same */
+    enum image_compression compression; /* of tile records; the caller may set it before the end */
+    bool has_borders;                   /* likewise: tiles come with the borders that they keep */
+    uint32_t tiles_size;                /* of TILES, in units of LM_DB_PLACE_BYTES */
     uint32_t tiles_crc;
     struct image_sha256 tiles_sha256;
 };
@@ -53,7 +63,8 @@ void image_writer_detail(struct image_writer *w, uint32_t entry, uint32_t place,
 
 /* Finish: borders of tiles, directory, manifest and header. `manifest` is text to which the SHA-256
  * of the other sections is added. Title, centre, mean elevation and geoid are taken from w->header,
- * the optional sections from w->targets to w->radar, where the caller has put them. Returns
+ * the other sections and how
+ * records are stored from the members above, where the caller has put them. Returns
  * 0, or -1 with the error reported; either way the writer is done with. */
 int image_writer_end(struct image_writer *w, const char *manifest);
 

@@ -107,7 +107,8 @@ struct ref_db {
     double mean_elevation_m, geoid_m;
     const uint8_t *geoid; /* section GEOID, or NULL */
     struct ref_place centre;
-    uint8_t *verdicts; /* owned: by entry, whether its record's checksum was found good */
+    uint8_t *verdicts;         /* owned: by entry, whether its record's checksum was found good */
+    struct lm_tile **unpacked; /* owned: by entry, the tile of a compressed record met so far */
 };
 
 /* Read and check header, classes, bands and the bounds of everything. Records are checked when

@@ -177,7 +177,7 @@ static uint32_t entry_crc(uint32_t number, const struct lm_tile_entry *e)
     return fx_crc32c(fx_crc32c(0, &number, sizeof number), e, 12);
 }
 
-TEST(an_entry_leads_to_a_whole_raw_record_and_to_detail_inside_its_section)
+TEST(an_entry_leads_to_a_whole_record_and_to_detail_inside_its_section)
 {
     enum { RAW = LM_TILE_BYTES / LM_DB_PLACE_BYTES, NONE = -1 };
     static const struct {
@@ -192,7 +192,13 @@ TEST(an_entry_leads_to_a_whole_raw_record_and_to_detail_inside_its_section)
         {{0, RAW - 1, 0, 0, LM_TILE_ABSENT, 0}, LM_ERR_CORRUPT},
         {{0, RAW + 1, 0, 0, LM_TILE_ABSENT, 0}, LM_ERR_CORRUPT},
         {{0, 0, 0, 0, LM_TILE_ABSENT, 0}, LM_ERR_CORRUPT},
-        {{0, RAW, 1, 0, LM_TILE_ABSENT, 0}, LM_ERR_VERSION},
+        {{0, RAW, LM_TILE_LZ4, 0, LM_TILE_ABSENT, 0}, LM_ERR_CORRUPT}, /* no shorter than raw */
+        {{0, RAW - 1, LM_TILE_LZ4, 0, LM_TILE_ABSENT, 0}, LM_OK},
+        {{3 * RAW - 1, 1, LM_TILE_LZ4, 0, LM_TILE_ABSENT, 0}, LM_OK},
+        {{3 * RAW - 1, 2, LM_TILE_LZ4, 0, LM_TILE_ABSENT, 0}, LM_ERR_CORRUPT},
+        {{0, 0, LM_TILE_LZ4, 0, LM_TILE_ABSENT, 0}, LM_ERR_CORRUPT},
+        {{0, UINT16_MAX, LM_TILE_LZ4, 0, LM_TILE_ABSENT, 0}, LM_ERR_CORRUPT},
+        {{0, RAW, 2, 0, LM_TILE_ABSENT, 0}, LM_ERR_VERSION},
         {{0, 7, 255, 0, LM_TILE_ABSENT, 0}, LM_ERR_VERSION},
         {{LM_TILE_ABSENT, 0, 0, 0, LM_TILE_ABSENT, 0}, LM_OK},
         {{0, RAW, 0, 4, 6, 0}, LM_OK},

@@ -153,9 +153,9 @@ static long compare_cover(const struct image *image)
     void *transformer = GDALCreateGenImgProjTransformer2(raster, NULL, options);
     assert_non_null(transformer);
     long compared = 0;
-    for (uint32_t i = 0; i < image->header.record_count; i++) {
-        const struct lm_tile *t = &image->tiles[i];
-        for (int k = 0; t->lod == 0 && k < CELLS * CELLS; k++) {
+    for (uint32_t i = 0; i < image->header.entry_count; i++) {
+        const struct lm_tile *t = image_entry_tile(image, i);
+        for (int k = 0; t && t->lod == 0 && k < CELLS * CELLS; k++) {
             double x, y, z = 0;
             int ok = 0;
             centre_of(image, t, k / CELLS, k % CELLS, &y, &x);
@@ -208,8 +208,11 @@ static double smoothing_error_m(const struct image_frame *f)
 static void compare_waves(const struct image *image, const double area[4], double spacing)
 {
     long compared = 0;
-    for (uint32_t i = 0; i < image->header.record_count; i++) {
-        const struct lm_tile *t = &image->tiles[i];
+    for (uint32_t i = 0; i < image->header.entry_count; i++) {
+        const struct lm_tile *t = image_entry_tile(image, i);
+        if (!t) {
+            continue;
+        }
         const uint8_t shift = (uint8_t)(image->header.shift0 + t->lod);
         const struct image_frame f = image_frame_of(shift, t->zone, t->row, t->column);
         for (int k = 0; k < CELLS * CELLS; k++) {
@@ -377,8 +380,11 @@ TEST(outside_the_class_raster_the_terrain_gives_the_class_at_its_own_level)
         assert_int_equal(image_cell_class(cell_at(&image, level, 46.78, 8.0)),
                          5); /* -5 m: still sea */
     }
-    for (uint32_t i = 0; i < image.header.record_count; i++) {
-        const struct lm_tile *t = &image.tiles[i];
+    for (uint32_t i = 0; i < image.header.entry_count; i++) {
+        const struct lm_tile *t = image_entry_tile(&image, i);
+        if (!t) {
+            continue;
+        }
         double latitude, longitude;
         centre_of(&image, t, 32, 32, &latitude, &longitude);
         if (t->lod < 3) {
@@ -387,9 +393,9 @@ TEST(outside_the_class_raster_the_terrain_gives_the_class_at_its_own_level)
     }
     /* Sea stays flat and exactly at its level, right up to the coast. */
     long sea = 0;
-    for (uint32_t i = 0; i < image.header.record_count; i++) {
-        const struct lm_tile *t = &image.tiles[i];
-        for (int k = 0; k < CELLS * CELLS; k++) {
+    for (uint32_t i = 0; i < image.header.entry_count; i++) {
+        const struct lm_tile *t = image_entry_tile(&image, i);
+        for (int k = 0; t && k < CELLS * CELLS; k++) {
             double latitude, longitude;
             centre_of(&image, t, k / CELLS, k % CELLS, &latitude, &longitude);
             if (t->lod < 4 && hypot(longitude - 8.0, latitude - 47.0) > 0.26) {
@@ -815,8 +821,11 @@ TEST(the_firmware_opens_the_image_and_accepts_every_tile)
     static struct lm_db db;
     memory_flash_open(&flash, image.bytes, image.size_bytes);
     assert_int_equal(lm_db_open(&db, &flash.port, 4), LM_OK);
-    for (uint32_t i = 0; i < image.header.record_count; i++) {
-        const struct lm_tile *t = &image.tiles[i];
+    for (uint32_t i = 0; i < image.header.entry_count; i++) {
+        const struct lm_tile *t = image_entry_tile(&image, i);
+        if (!t) {
+            continue;
+        }
         const int64_t entry = lm_db_entry(&db, t->lod, t->row, t->column);
         assert_true(entry >= 0);
         assert_int_equal(lm_db_entry_check(&db, (uint32_t)entry, &image.entries[entry]), LM_OK);
@@ -945,11 +954,23 @@ TEST(inspect_verify_and_picture_say_what_is_in_the_image)
     assert_int_equal(
         scene_run("picture %s --plane colour --out %s", scene_path("a.lmdb"), scene_path("p.png")),
         2);
-    assert_int_equal(support_run("printf x | dd of=%s bs=1 seek=30000 conv=notrunc 2>/dev/null",
-                                 scene_path("a.lmdb")),
-                     0);
-    assert_int_equal(scene_run("verify %s", scene_path("a.lmdb")), 1);
+    assert_int_equal(
+        scene_run("convert --compress none %s %s", scene_path("a.lmdb"), scene_path("raw.lmdb")),
+        0);
+    static const char *const images[] = {"a.lmdb", "raw.lmdb"};
+    for (int i = 0; i < 2; i++) {
+        assert_int_equal(support_run("printf x | dd of=%s bs=1 seek=30000 conv=notrunc 2>/dev/null",
+                                     scene_path(images[i])),
+                         0);
+        assert_int_equal(scene_run("verify %s", scene_path(images[i])), 1);
+        assert_true(scene_log_holds("tile of entry"));
+    }
     assert_true(scene_log_holds("tile of entry 17: its checksum does not fit it"));
+    assert_int_equal(
+        scene_run("convert --compress lz4 %s %s", scene_path("raw.lmdb"), scene_path("never.lmdb")),
+        1);
+    assert_true(scene_log_holds("convert a sound copy of it"));
+    assert_int_equal(access(scene_path("never.lmdb"), F_OK), -1);
     assert_int_equal(scene_run("verify %s", scene_path("classes.tif")), 1);
     assert_int_equal(scene_run("inspect %s", scene_path("classes.tif")), 1);
     assert_int_equal(scene_run("verify"), 2);
@@ -1008,9 +1029,10 @@ TEST(real_dted_becomes_one_island_without_seams)
     open_sound_image(&image, "a.lmdb");
     /* Mauna Kea, 4,205 m, and the sea off Hilo. */
     double highest = 0;
-    for (uint32_t i = 0; i < image.header.record_count; i++) {
-        for (int k = 0; k < CELLS * CELLS; k++) {
-            highest = fmax(highest, post_m(&image.tiles[i], k / CELLS, k % CELLS));
+    for (uint32_t i = 0; i < image.header.entry_count; i++) {
+        const struct lm_tile *t = image_entry_tile(&image, i);
+        for (int k = 0; t && k < CELLS * CELLS; k++) {
+            highest = fmax(highest, post_m(t, k / CELLS, k % CELLS));
         }
     }
     assert_true(highest > 4150 && highest < 4210);

@@ -639,7 +639,7 @@ TEST(a_tile_written_is_a_tile_the_firmware_reads)
     assert_int_equal(lm_db_entry(&db, 0, tile.row, 5), 1);
     assert_int_equal(lm_db_entry_check(&db, 1, &image.entries[1]), LM_OK);
     assert_int_equal(image.entries[1].place, 0);
-    memcpy(&read_back, &image.tiles[0], sizeof read_back);
+    memcpy(&read_back, image_entry_tile(&image, 1), sizeof read_back);
     assert_int_equal(lm_tile_check(&read_back, 0, tile.row, 5), LM_OK);
     assert_int_equal(lm_db_entry_check(&db, 2, &image.entries[2]), LM_OK);
     assert_true(image.entries[2].place == LM_TILE_ABSENT);

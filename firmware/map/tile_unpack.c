@@ -1,0 +1,59 @@
+#include "lm/tile_unpack.h"
+
+#include <stddef.h>
+
+#include "fx/mem.h"
+
+enum { HEAD_BYTES = offsetof(struct lm_tile, points) };
+
+int lm_tile_unpack_begin(struct lm_tile_unpack *u, struct lm_tile *tile, uint16_t size)
+{
+    *u = (struct lm_tile_unpack){.tile = tile};
+    /* A stored record is at least one unit shorter than a raw one: its head lies behind the
+     * tile's. */
+    memcpy(tile, lm_tile_unpack_place(tile, size), HEAD_BYTES);
+    const uint32_t block_bytes = tile->block_bytes;
+    if (block_bytes > (uint32_t)LM_DB_PLACE_BYTES * size - HEAD_BYTES) {
+        return LM_ERR_CORRUPT;
+    }
+    tile->block_bytes = 0;
+    lm_lz4_begin(&u->lz4, (uint8_t *)tile->points, sizeof tile->points,
+                 LM_TILE_BYTES - HEAD_BYTES - block_bytes, block_bytes);
+    return LM_BUSY;
+}
+
+/* Put the strips of a row right. What is left of a post is its rise above the post south of it,
+ * less the rise of the post west of it; all numbers are modulo 2^16, and row 0 rises from 0. Signs
+ * stand in bit 0: 0, -1, 1, -2 ... are stored as 0, 1, 2, 3 ... */
+static void put_right(struct lm_tile *tile, uint32_t row)
+{
+    struct lm_tile_point *points = tile->points[row];
+    uint8_t strips[4][LM_TILE_POINTS];
+    _Static_assert(sizeof strips == sizeof tile->points[0], "a row stays in its place");
+    memcpy(strips, points, sizeof strips);
+    uint32_t rise = 0;
+    for (uint32_t i = 0; i < LM_TILE_POINTS; i++) {
+        const uint32_t left = (uint32_t)(strips[3][i] << 8 | strips[2][i]);
+        const uint32_t south = row > 0 ? tile->points[row - 1][i].post : 0;
+        rise += (left >> 1) ^ (0u - (left & 1));
+        points[i].cell = (uint16_t)(strips[0][i] << 8 | strips[1][i]);
+        points[i].post = (uint16_t)(south + rise);
+    }
+}
+
+int lm_tile_unpack_run(struct lm_tile_unpack *u)
+{
+    if (!u->is_decoded) {
+        const int status = lm_lz4_run(&u->lz4, LM_TILE_UNPACK_SEQUENCES);
+        u->is_decoded = status == LM_OK;
+        return u->is_decoded ? LM_BUSY : status;
+    }
+    for (uint32_t i = 0; i < LM_TILE_UNPACK_ROWS && u->row < LM_TILE_POINTS; i++) {
+        put_right(u->tile, u->row++);
+    }
+    if (u->row < LM_TILE_POINTS) {
+        return LM_BUSY;
+    }
+    memset(u->tile->reserved3, 0, sizeof u->tile->reserved3);
+    return LM_OK;
+}
