@@ -18,3 +18,11 @@ $(INPUTS_TEST): tests/system/test_inputs.py $(PROGRAMS)
 	@mkdir -p $(@D)
 	@printf '#!/bin/sh\nexec $${PYTHON:-/usr/bin/python3} -B tests/system/test_inputs.py "$$@"\n' >$@
 	@chmod +x $@
+
+# Thermal pictures beside the thermal band of a satellite.
+LANDSAT_TEST := $(O)/bin/tests/system/test_real_infrared
+TESTS += $(LANDSAT_TEST)
+$(LANDSAT_TEST): tests/system/test_real_infrared.py $(O)/bin/landmass-db
+	@mkdir -p $(@D)
+	@printf '#!/bin/sh\nexec $${PYTHON:-/usr/bin/python3} -B tests/system/test_real_infrared.py\n' >$@
+	@chmod +x $@

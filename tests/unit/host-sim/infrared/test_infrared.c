@@ -149,6 +149,18 @@ TEST(the_sky_shines_as_its_formulas_have_it)
     assert_true(fabs(a.sky_window - (0.5 + 0.339 / 2)) < 0.001);
 }
 
+/* The scene of Landsat 5 LT52240631988227CUB02, whose MTL file says: 1988-08-14, 13:00:47 UTC, sun
+ * 49.76 degrees high at azimuth 61.97; its middle lies at 4.33 S, 50.07 W. The equation of time was
+ * -4.6 minutes. The declination of one formula for all years is off by up to half a degree. */
+TEST(the_sun_stands_where_landsat_saw_it)
+{
+    const struct ir_weather w = {.latitude = -4.33 * pi / 180, .day_of_year = 227};
+    double sun[3];
+    ir_sun(&w, 13 + 47.0 / 3600 - 50.07 / 15 - 4.6 / 60, sun);
+    assert_true(fabs(asin(sun[2]) * 180 / pi - 49.76) < 0.5);
+    assert_true(fabs(atan2(sun[0], sun[1]) * 180 / pi - 61.97) < 1);
+}
+
 /* ---- The Moon ---- */
 
 static struct ir_air moon_at(const void *context, double part)
