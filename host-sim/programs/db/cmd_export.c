@@ -4,6 +4,7 @@
 
 #include "gis/class_raster.h"
 #include "gis/qgis.h"
+#include "gis/sensor_tag.h"
 #include "hs/error.h"
 #include "hs/options.h"
 #include "hs/output_path.h"
@@ -145,6 +146,9 @@ static int create(struct work *w, const struct plane *plane, struct db_raster_ou
     const GDALRasterBandH band = GDALGetRasterBand(out->dataset, 1);
     GDALSetDescription(band, image_plane_names[plane->plane]);
     GDALSetRasterUnitType(band, plane->unit);
+    if (plane->plane == IMAGE_PLANE_REFLECTIVITY) {
+        db_sensor_tag_write(out, (enum hs_sensor)w->image.header.sensor);
+    }
     return 0;
 }
 

@@ -121,6 +121,9 @@ TEST(gdal_reads_back_every_plane_as_it_was_built)
     struct opened o = open_plane("planes/reflectivity.tif");
     assert_string_equal(GDALGetRasterUnitType(o.band), "dB");
     assert_string_equal(GDALGetDescription(o.band), "reflectivity");
+    const char *sensor = GDALGetMetadataItem(o.file, "LANDMASS_SENSOR", NULL);
+    assert_non_null(sensor);
+    assert_string_equal(sensor, "x");
     GDALClose(o.file);
     o = open_plane("planes/height.tif");
     assert_string_equal(GDALGetRasterUnitType(o.band), "m");
