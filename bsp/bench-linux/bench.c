@@ -69,6 +69,7 @@ int bench_open(struct bench *b, const struct bench_scene *scene, const struct be
                                  .can = bus->can,
                                  .bus_profile = bus->profile,
                                  .bus_node = bus->node,
+                                 .is_heading_magnetic = bus->is_heading_magnetic,
                                  .tells_reports = bus->tells_reports,
                                  .hardware_revision = 1,
                                  .controls = controls,

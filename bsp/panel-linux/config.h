@@ -41,6 +41,7 @@ struct config {
     char can[CONFIG_NAME];
     const struct lm_bus_profile *can_profile;
     uint32_t can_node;
+    uint32_t can_heading; /* 1: magnetic */
     uint32_t can_reports; /* 1: on */
     uint32_t seed;
     uint32_t tiles;

@@ -29,6 +29,11 @@ const struct config_row config_table[] = {
     OPTION(
         CONFIG_NUMBER, can_node, 0, 255, NULL, "can.node", "0..255", "0",
         "The panel's node on a CANaerospace bus, where it answers requests; 0: it only listens."),
+    OPTION(CONFIG_CHOICE, can_heading, 0, 0, "true magnetic", "can.heading", "true | magnetic",
+           "true",
+           "What CANaerospace's heading angle (321) is from. A magnetic one needs the variation "
+           "(1121) "
+           "on the bus; without it the glass says MAG HDG."),
     OPTION(CONFIG_CHOICE, can_reports, 0, 0, "off on", "can.reports", "off | on", "off",
            "Whether that node tells cursor, designated place, mode and state (docs/bus.md)."),
     OPTION(CONFIG_NUMBER, seed, 0, 2147483647, NULL, "seed", "0..2147483647", "0",

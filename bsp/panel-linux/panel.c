@@ -101,6 +101,7 @@ static int start_unit(struct panel *p, const struct lm_flash *flash)
                                  .can = &p->bus.port,
                                  .bus_profile = p->config->can_profile,
                                  .bus_node = (uint8_t)p->config->can_node,
+                                 .is_heading_magnetic = p->config->can_heading != 0,
                                  .tells_reports = p->config->can_reports != 0,
                                  .controls = &p->controls,
                                  .display = &p->glass.port,

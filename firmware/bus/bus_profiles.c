@@ -34,6 +34,9 @@ enum { TEN_MILLIONTHS = 10000000 };
  * own (334), of which the specification does not say whether it is the direction from or to: from,
  * as meteorologists say it.
  *
+ * Variation changes by a degree in an hour of flight, so that an old one is far better than none.
+ * Of its sign the specification says nothing: east is positive, as on charts.
+ *
  * The specification gives longitudes of waypoint, INS and auxiliary the type SHORT; that is a
  * misprint for the SHORT2 of the latitudes. */
 /* clang-format off */
@@ -58,6 +61,8 @@ static const struct lm_bus_row canas17_rows[] = {
     ROW("active nav wp latitude",               1000, STEERPOINT_LATITUDE, 0, ANALOGUE,  -90,    90, 1000000, 3000, 10000),
     ROW("active nav wp longitude",              1001, STEERPOINT_LONGITUDE, 0, ANALOGUE, -180,  180, 1000000, 3000, 10000),
     ROW("UTC",                                  1200, UTC,              0, CLOCK,        0, 86400, 1000000, 3000, 10000),
+    ROW("magnetic heading",                     1069, MAGNETIC_HEADING, 0, ANALOGUE,  -180,   360,  100000,  300,  1000),
+    ROW("magnetic variation",                   1121, MAGNETIC_VARIATION, 0, ANALOGUE, -180,  180,  100000, 10000, 60000),
     ROW("INS latitude",                         1049, LATITUDE,         1, ANALOGUE,   -90,    90,  100000,  300,  2000),
     ROW("INS longitude",                        1050, LONGITUDE,        1, ANALOGUE,  -180,   180,  100000,  300,  2000),
     ROW("INS height above ellipsoid",           1051, ELLIPSOID_HEIGHT, 1, ANALOGUE, -1000, 30000,  100000,  500,  5000),

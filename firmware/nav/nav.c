@@ -266,10 +266,32 @@ static int64_t heading_rate(const struct lm_ownship *out, const struct lm_nav *n
     return mix * (1 << 30) / cos_pitch_q30;
 }
 
+/* The heading to use. A magnetic one with a variation is certain, one that does not say what it is
+ * is not. Variation changes slowly: its age does not make the heading old. */
+static struct reading read_heading(const struct lm_nav *n, uint64_t now_us, bool *is_magnetic)
+{
+    const struct reading of_true = read_field(n, LM_BUS_TRUE_HEADING, now_us),
+                         plain = read_field(n, LM_BUS_HEADING, now_us),
+                         compass = read_field(n, LM_BUS_MAGNETIC_HEADING, now_us),
+                         variation = read_field(n, LM_BUS_MAGNETIC_VARIATION, now_us);
+    const bool is_plain_used =
+        compass.quality == LM_NAV_DEAD || (variation.quality == LM_NAV_DEAD &&
+                                           plain.quality != LM_NAV_DEAD && !n->is_heading_magnetic);
+    struct reading r = is_plain_used ? plain : compass;
+    *is_magnetic = false;
+    if (of_true.quality != LM_NAV_DEAD) {
+        return of_true;
+    }
+    if (r.quality != LM_NAV_DEAD && (!is_plain_used || n->is_heading_magnetic)) {
+        *is_magnetic = variation.quality == LM_NAV_DEAD;
+        r.value = (int32_t)((uint32_t)r.value + (uint32_t)variation.value);
+    }
+    return r;
+}
+
 static void set_heading(struct lm_ownship *out, const struct lm_nav *n, uint64_t now_us)
 {
-    const struct reading heading = first_alive(read_field(n, LM_BUS_TRUE_HEADING, now_us),
-                                               read_field(n, LM_BUS_HEADING, now_us));
+    const struct reading heading = read_heading(n, now_us, &out->is_heading_magnetic);
     out->heading_quality = heading.quality;
     out->heading_source = heading.field;
     out->heading_origin = heading.origin;

@@ -33,7 +33,7 @@ static uint32_t nav_flags(const struct lm_unit *u)
     }
     const bool is_good = own->position_quality == LM_NAV_GOOD &&
                          own->height_quality == LM_NAV_GOOD && own->heading_quality == LM_NAV_GOOD;
-    return is_good ? 0 : LM_FLAG_NAV_STALE;
+    return (is_good ? 0 : LM_FLAG_NAV_STALE) | (own->is_heading_magnetic ? LM_FLAG_MAGNETIC : 0u);
 }
 
 /* LM_FLAG_BELOW, by the elevation read last. */

@@ -49,6 +49,7 @@ int lm_unit_init(struct lm_unit *u, const struct lm_board *board)
     const struct lm_bus_profile *bus = board->bus_profile ? board->bus_profile : &lm_bus_canas17;
     lm_bus_init(&u->bus, bus);
     lm_nav_init(&u->nav);
+    u->nav.is_heading_magnetic = board->is_heading_magnetic;
     const uint8_t node = bus->framing == LM_BUS_CANAEROSPACE ? board->bus_node : 0;
     lm_canas_service_init(&u->service, node, board->hardware_revision, LM_VERSION_NUMBER);
     lm_canas_report_init(&u->report, board->tells_reports ? node : 0);

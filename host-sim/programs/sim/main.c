@@ -411,7 +411,7 @@ static int run(struct sim *s)
         return -1;
     }
     hands_init(&s->hands, &s->script.port);
-    const struct bench_bus bus = {&s->can, o->profile, o->node, o->tells_reports};
+    const struct bench_bus bus = {&s->can, o->profile, o->node, o->heading == 1, o->tells_reports};
     const struct bench_glass glass = {o->width_px, o->height_px, o->glass};
     const struct bench_scene scene = {o->database, o->radar ? &s->radar : NULL};
     if (bench_open(&s->bench, &scene, &glass, o->seed, &bus, &s->hands.port) != 0) {

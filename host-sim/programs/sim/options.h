@@ -16,6 +16,7 @@ struct options {
     uint32_t seed;  /* of the noise */
     uint16_t width_px, height_px;
     bool has_window, has_bezel, is_quiet;
+    int heading;                          /* of the bus: 0 true, 1 magnetic */
     bool tells_reports;                   /* on the bus, as its node */
     const struct lm_bus_profile *profile; /* of the bus */
     uint8_t node;                         /* on the bus; 0: it only listens */

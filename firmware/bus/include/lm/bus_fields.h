@@ -18,7 +18,7 @@ enum lm_bus_field {
     LM_BUS_TRUE_TRACK,
     LM_BUS_PITCH,
     LM_BUS_ROLL,
-    LM_BUS_HEADING, /* true or magnetic: CANaerospace does not say */
+    LM_BUS_HEADING, /* true or magnetic, as the board says: CANaerospace does not */
     LM_BUS_TRUE_HEADING,
     LM_BUS_BARO_ALTITUDE, /* corrected by the altimeter setting: nearly above mean sea level */
     LM_BUS_TRUE_ALTITUDE, /* above mean sea level */
@@ -31,6 +31,8 @@ enum lm_bus_field {
     LM_BUS_STEERPOINT_LATITUDE, /* the active waypoint of CANaerospace */
     LM_BUS_STEERPOINT_LONGITUDE,
     LM_BUS_UTC,
+    LM_BUS_MAGNETIC_HEADING,
+    LM_BUS_MAGNETIC_VARIATION, /* of magnetic from true north, east positive */
     LM_BUS_NAV_FIELDS, /* the fields above belong to lm/nav.h, those below to lm/weather_bus.h */
 
     LM_BUS_RAIN_LATITUDE = LM_BUS_NAV_FIELDS, /* of the centre of a circle of rain */

@@ -45,7 +45,8 @@ struct lm_nav {
         bool has_value;
     } item[LM_BUS_NAV_FIELDS][LM_NAV_SOURCES];
 
-    bool is_baro_preferred; /* the operator chose barometric altitude before the other heights */
+    bool is_heading_magnetic; /* the board says that LM_BUS_HEADING is magnetic */
+    bool is_baro_preferred;   /* the operator chose barometric altitude before the other heights */
 
     /* Jumps: values of a coordinate that are farther from the sender's last one than
      * LM_NAV_JUMP_M_S allows (at least 150 m); latitude and longitude count separately. A jump is
@@ -78,7 +79,8 @@ struct lm_ownship {
     struct lm_nav_origin height_origin;
 
     fx_bam_t heading;                 /* of the nose, from north by east */
-    enum lm_bus_field heading_source; /* TRUE_HEADING, or HEADING, which may be magnetic */
+    enum lm_bus_field heading_source; /* TRUE_, MAGNETIC_HEADING or HEADING */
+    bool is_heading_magnetic;         /* it is from magnetic north: there is no variation */
     enum lm_nav_quality heading_quality;
     int32_t turn_bam_s; /* rate of turn of the heading; 0 unless body rates and attitude are good */
     struct lm_nav_origin heading_origin;
@@ -140,9 +142,10 @@ void lm_nav_take(struct lm_nav *n, const struct lm_bus_event *event);
  * Height: above the ellipsoid, or else true altitude, or else corrected barometric (the latter
  * first if is_baro_preferred); extrapolated by up-velocity, or else altitude rate.
  *
- * Heading: true heading, or else heading; extrapolated by the body's pitch and yaw rates while
- * these and the attitude are good. Error: 0.06 degree after 100 ms at 12 and 7 deg/s and up to 60
- * degrees of pitch.
+ * Heading: true heading; or else magnetic heading with the magnetic variation added; or else
+ * heading, which is magnetic, too, if is_heading_magnetic; or else magnetic heading as it is.
+ * Extrapolated by the body's pitch and yaw rates while these and the attitude are good. Error: 0.06
+ * degree after 100 ms at 12 and 7 deg/s and up to 60 degrees of pitch.
  *
  * Attitude: pitch and roll as received.
  *

@@ -18,6 +18,7 @@ enum {
                      | LM_FLAG_OFF_MAP /* the image does not cover most of the picture */
                      | LM_FLAG_WEATHER /* the sender of the weather is silent */
                      | LM_FLAG_BELOW   /* height or terrain is wrong */
+                     | LM_FLAG_MAGNETIC /* the sender of the variation is silent */
 };
 
 enum { LM_FAULTS_KEPT = 4 };

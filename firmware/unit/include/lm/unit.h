@@ -51,6 +51,7 @@ struct lm_board {
     const struct lm_can *can;
     const struct lm_bus_profile *bus_profile; /* NULL: lm_bus_canas17 */
     uint8_t bus_node;          /* the unit's CANaerospace node, 1..255; 0: no node services */
+    bool is_heading_magnetic;  /* the bus's LM_BUS_HEADING is from magnetic north */
     bool tells_reports;        /* it also tells lm/canas_report.h; without a node it does not */
     uint8_t hardware_revision; /* told on the bus on request */
     const struct lm_controls *controls;

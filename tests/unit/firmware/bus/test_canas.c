@@ -535,7 +535,7 @@ TEST(every_malformed_frame_is_refused_for_its_own_reason)
         {"11 bits with 21", wide, LM_BUS_FOREIGN},
         {"channel 4", with_extended_id(good, 0x4040c), LM_BUS_OTHER_CHANNEL},
         {"channel 8191", with_extended_id(good, 0x1fff040c), LM_BUS_OTHER_CHANNEL},
-        {"magnetic heading", bus_frame(1069, 2, 0, 0, 0), LM_BUS_UNUSED},
+        {"magnetic track", bus_frame(1041, 2, 0, 0, 0), LM_BUS_UNUSED},
         {"no bytes", with_length(good, 0), LM_BUS_BAD_LENGTH},
         {"three bytes", with_length(good, 3), LM_BUS_BAD_LENGTH},
         {"a FLOAT of three bytes", with_length(good, 7), LM_BUS_BAD_LENGTH},

@@ -242,6 +242,59 @@ TEST(the_barometric_height_comes_first_when_it_is_preferred_and_lives)
     assert_int_equal(at(&ear, 6000000).height_source, LM_BUS_ELLIPSOID_HEIGHT);
 }
 
+/* "Variation east, magnetic least": a compass that reads 350 where the variation is 12 degrees east
+ * points to 002 true, and to 338 where it is 12 west. */
+TEST(a_magnetic_heading_is_corrected_by_the_variation)
+{
+    struct ear ear;
+    open_ear(&ear);
+    hear_float(&ear, LM_BUS_MAGNETIC_HEADING, 350, 0);
+    struct lm_ownship o = at(&ear, 0);
+    assert_true(o.is_heading_magnetic && fabs(hs_degrees(o.heading) + 10) < 1e-5);
+    hear_float(&ear, LM_BUS_MAGNETIC_VARIATION, 12, 0);
+    o = at(&ear, 0);
+    assert_int_equal(o.heading_source, LM_BUS_MAGNETIC_HEADING);
+    assert_true(!o.is_heading_magnetic && fabs(hs_degrees(o.heading) - 2) < 1e-5);
+    hear_float(&ear, LM_BUS_MAGNETIC_VARIATION, -12, 0);
+    assert_true(fabs(hs_degrees(at(&ear, 0).heading) + 22) < 1e-5);
+
+    /* A minute without a variation, and the heading is what the compass says. */
+    hear_float(&ear, LM_BUS_MAGNETIC_HEADING, 350, 60000000);
+    o = at(&ear, 60000000);
+    assert_true(!o.is_heading_magnetic && o.heading_quality == LM_NAV_GOOD);
+    o = at(&ear, 60000001);
+    assert_true(o.is_heading_magnetic && fabs(hs_degrees(o.heading) + 10) < 1e-5);
+
+    hear_float(&ear, LM_BUS_TRUE_HEADING, 5, 60000001);
+    o = at(&ear, 60000001);
+    assert_true(o.heading_source == LM_BUS_TRUE_HEADING && !o.is_heading_magnetic);
+}
+
+TEST(heading_321_is_what_the_board_says)
+{
+    for (int is_magnetic = 0; is_magnetic < 2; is_magnetic++) {
+        struct ear ear;
+        open_ear(&ear);
+        ear.nav.is_heading_magnetic = is_magnetic;
+        hear_float(&ear, LM_BUS_HEADING, 90, 0);
+        assert_int_equal(at(&ear, 0).is_heading_magnetic, is_magnetic);
+        hear_float(&ear, LM_BUS_MAGNETIC_VARIATION, 3, 0);
+        struct lm_ownship o = at(&ear, 0);
+        assert_true(!o.is_heading_magnetic && o.heading_source == LM_BUS_HEADING);
+        assert_true(fabs(hs_degrees(o.heading) - (is_magnetic ? 93 : 90)) < 1e-5);
+        /* A compass that can be corrected is surer than a heading of either kind. */
+        hear_float(&ear, LM_BUS_MAGNETIC_HEADING, 88, 0);
+        o = at(&ear, 0);
+        assert_true(o.heading_source == LM_BUS_MAGNETIC_HEADING);
+        assert_true(fabs(hs_degrees(o.heading) - 91) < 1e-5);
+    }
+    struct ear ear;
+    open_ear(&ear);
+    hear_float(&ear, LM_BUS_HEADING, 90, 0);
+    hear_float(&ear, LM_BUS_MAGNETIC_HEADING, 88, 0);
+    assert_int_equal(at(&ear, 0).heading_source, LM_BUS_HEADING); /* true, so the board says */
+}
+
 TEST(true_heading_is_preferred_while_it_lives)
 {
     struct ear ear;
@@ -343,7 +396,7 @@ static void hear_place(struct ear *ear, uint32_t row, uint32_t channel, double d
     hear_float(ear, LM_BUS_EAST_VELOCITY, 0, time_us);
 }
 
-enum { GPS = 0, INS = 20, AUXILIARY = 25 };
+enum { GPS = 0, INS = LM_BUS_NAV_FIELDS, AUXILIARY = INS + 5 };
 
 static void assert_place(const struct ear *ear, uint64_t now_us, int degrees,
                          enum lm_nav_quality quality)

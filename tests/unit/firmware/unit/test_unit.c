@@ -61,6 +61,33 @@ TEST(without_a_bus_the_glass_says_so_and_shows_no_picture)
     free_rig(r);
 }
 
+/* The rig's bus without the true heading, 1133. */
+static int hear_without_true_heading(void *ctx, struct lm_can_frame *frame)
+{
+    struct rig *r = ctx;
+    int status;
+    do {
+        status = r->board.can.receive(r, frame);
+    } while (status == 1 && frame->id == 1133);
+    return status;
+}
+
+TEST(a_magnetic_heading_without_a_variation_is_said_on_the_glass)
+{
+    for (int is_magnetic = 0; is_magnetic < 2; is_magnetic++) {
+        struct rig *r = make_rig();
+        const struct lm_can can = {.ctx = r, .receive = hear_without_true_heading};
+        r->board.lent.can = &can;
+        r->board.lent.is_heading_magnetic = is_magnetic;
+        assert_int_equal(lm_unit_init(&r->unit, &r->board.lent), LM_OK);
+        command(r, range_10);
+        run(r, 2);
+        assert_int_equal((r->unit.flags & LM_FLAG_MAGNETIC) != 0, is_magnetic);
+        assert_true(lit_pixels(r) > 10000);
+        free_rig(r);
+    }
+}
+
 TEST(stale_nav_freezes_the_sweep_then_removes_the_picture_then_recovers)
 {
     struct rig *r = start_rig();
