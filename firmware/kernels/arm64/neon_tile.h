@@ -9,11 +9,16 @@
 #include "fx/mem.h"
 #include "lm/tile_point.h"
 
-/* Weights of eight places: bits 25..18 of each. */
-static inline uint16x8_t neon_weights(uint32x4_t low, uint32x4_t high)
+/* Upper halves of the coordinates of eight places. They hold all that weights need. */
+static inline uint16x8_t neon_halves(uint32x4_t low, uint32x4_t high)
 {
-    const uint16x8_t upper = vuzp2q_u16(vreinterpretq_u16_u32(low), vreinterpretq_u16_u32(high));
-    return vshrq_n_u16(vshlq_n_u16(upper, 6), 8);
+    return vuzp2q_u16(vreinterpretq_u16_u32(low), vreinterpretq_u16_u32(high));
+}
+
+/* Weights of eight places: bits 25..18 of each. */
+static inline uint16x8_t neon_weights(uint16x8_t halves)
+{
+    return vshrq_n_u16(vshlq_n_u16(halves, 6), 8);
 }
 
 /* Where the points of four places are, in bytes from the own ones of the pool's first record. */

@@ -98,11 +98,11 @@ static inline uint32x4_t neon_half_on(uint32x4_t at)
     return vhaddq_u32(at, vdupq_n_u32(1u << 25));
 }
 
-/* Bits 24..18 of eight coordinates. */
-static inline uint16x8_t neon_fractions(uint32x4_t low, uint32x4_t high)
+/* Ways from the middles of cells, in 128ths. */
+static inline uint16x8_t neon_from_middles(uint16x8_t half)
 {
-    const uint16x8_t upper = vuzp2q_u16(vreinterpretq_u16_u32(low), vreinterpretq_u16_u32(high));
-    return vshrq_n_u16(vshlq_n_u16(upper, 7), 9);
+    const uint16x8_t half_a_cell = vdupq_n_u16(1 << 9);
+    return vshrq_n_u16(vshlq_n_u16(vaddq_u16(half, half_a_cell), 6), 9);
 }
 
 /* Where the south-western of the four cells is, in bytes from the record's first point. */
@@ -505,19 +505,18 @@ static inline void neon_add_heights(const struct neon_map *map, const struct neo
 
 /* ---- a turn ---- */
 
-/* Elevation of the terrain at eight places. */
-static inline void neon_elevations(const struct neon_places *at, size_t half, const uint32_t *scale,
-                                   const neon_pair *south, const neon_pair *north,
-                                   uint32x4_t elevation[2])
+/* Elevation of the terrain at eight places, whose halves are given. */
+static inline uint32x4x2_t neon_elevations(const uint32_t *scale, const neon_pair *south,
+                                           const neon_pair *north, uint16x8_t east_half,
+                                           uint16x8_t north_half)
 {
     const uint16x8x4_t s = vld4q_u16((const uint16_t *)south);
     const uint16x8x4_t f = vld4q_u16((const uint16_t *)north);
     const struct neon_posts posts = {s.val[1], s.val[3], f.val[1], f.val[3]};
     const uint32x4x2_t post_q16 =
-        neon_bilerp(&posts, neon_weights(at->east[2 * half], at->east[2 * half + 1]),
-                    neon_weights(at->north[2 * half], at->north[2 * half + 1]));
-    elevation[0] = neon_elevation(vld1q_u32(scale), post_q16.val[0]);
-    elevation[1] = neon_elevation(vld1q_u32(scale + 4), post_q16.val[1]);
+        neon_bilerp(&posts, neon_weights(east_half), neon_weights(north_half));
+    return (uint32x4x2_t){{neon_elevation(vld1q_u32(scale), post_q16.val[0]),
+                           neon_elevation(vld1q_u32(scale + 4), post_q16.val[1])}};
 }
 
 /* Store the elevations of the terrain, and find the four cells around each place. */
@@ -527,35 +526,34 @@ static inline void neon_read(const struct neon_map *map, struct neon_turn turn,
     const struct neon_places *const at = turn.at;
     uint32_t offset[2 * PLACES];
     neon_pair south[PLACES], north[PLACES];
-    uint16x8_t u[2], v[2];
-    uint32x4_t elevation[4];
-    uint32x4_t n_q25[4], e_q25[4];
     for (size_t h = 0; h < 4; h++) {
         const uint32x4_t record = vld1q_u32(turn.cell + 4 * (h % 2) + (h < 2 ? 0 : turn.next));
-        n_q25[h] = neon_half_on(at->north[h]);
-        e_q25[h] = neon_half_on(at->east[h]);
         vst1q_u32(offset + 4 * h, neon_offsets(record, at->north[h], at->east[h]));
-        vst1q_u32(offset + PLACES + 4 * h, neon_corner_offsets(record, n_q25[h], e_q25[h]));
+        vst1q_u32(offset + PLACES + 4 * h, neon_corner_offsets(record, neon_half_on(at->north[h]),
+                                                               neon_half_on(at->east[h])));
     }
-    for (size_t h = 0; h < 2; h++) {
-        u[h] = neon_fractions(e_q25[2 * h], e_q25[2 * h + 1]);
-        v[h] = neon_fractions(n_q25[2 * h], n_q25[2 * h + 1]);
-    }
-    neon_set_weights(c, u, v);
+    const uint16x8_t e[2] = {neon_halves(at->east[0], at->east[1]),
+                             neon_halves(at->east[2], at->east[3])};
+    const uint16x8_t n[2] = {neon_halves(at->north[0], at->north[1]),
+                             neon_halves(at->north[2], at->north[3])};
     __asm__("" : "+m"(offset));
     for (size_t k = 0; k < PLACES; k += 4) {
         neon_fetch(&map->posts, offset + k, south + k, north + k);
     }
     uint32_t *const further = turn.elevation + turn.next;
-    neon_elevations(at, 0, turn.elevation, south, north, elevation);
-    neon_elevations(at, 1, further, south + LM_LANES, north + LM_LANES, elevation + 2);
-    vst1q_u32(further, elevation[2]);
-    vst1q_u32(further + 4, elevation[3]);
-    vst1q_u32(turn.elevation, elevation[0]);
-    vst1q_u32(turn.elevation + 4, elevation[1]);
+    const uint32x4x2_t low = neon_elevations(turn.elevation, south, north, e[0], n[0]);
+    const uint32x4x2_t high =
+        neon_elevations(further, south + LM_LANES, north + LM_LANES, e[1], n[1]);
+    vst1q_u32(further, high.val[0]);
+    vst1q_u32(further + 4, high.val[1]);
+    vst1q_u32(turn.elevation, low.val[0]);
+    vst1q_u32(turn.elevation + 4, low.val[1]);
     for (size_t k = 0; k < PLACES; k += 4) {
         neon_fetch(&map->cells, offset + PLACES + k, south + k, north + k);
     }
+    const uint16x8_t u[2] = {neon_from_middles(e[0]), neon_from_middles(e[1])};
+    const uint16x8_t v[2] = {neon_from_middles(n[0]), neon_from_middles(n[1])};
+    neon_set_weights(c, u, v);
     const uint16x8x4_t s[2] = {vld4q_u16((const uint16_t *)south),
                                vld4q_u16((const uint16_t *)(south + LM_LANES))};
     const uint16x8x4_t f[2] = {vld4q_u16((const uint16_t *)north),

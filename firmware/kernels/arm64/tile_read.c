@@ -32,8 +32,8 @@ void lm_k_tile_read(const struct lm_tile_point *points, const struct lm_tile_coo
         const uint16x8x4_t s = vld4q_u16((const uint16_t *)south);
         const uint16x8x4_t f = vld4q_u16((const uint16_t *)north);
         const struct neon_posts posts = {s.val[1], s.val[3], f.val[1], f.val[3]};
-        const uint32x4x2_t post_q16 =
-            neon_bilerp(&posts, neon_weights(e[0], e[1]), neon_weights(n[0], n[1]));
+        const uint32x4x2_t post_q16 = neon_bilerp(&posts, neon_weights(neon_halves(e[0], e[1])),
+                                                  neon_weights(neon_halves(n[0], n[1])));
         vst1q_u32(cell, vmovl_u16(vget_low_u16(s.val[0])));
         vst1q_u32(cell + 4, vmovl_high_u16(s.val[0]));
         for (int half = 0; half < 2; half++) {
