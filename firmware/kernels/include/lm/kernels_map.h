@@ -112,8 +112,8 @@ struct lm_k_blend {
  *   steps of 1/64 dB. Reflectivities of one class must be within 63.5 dB.
  * - elevation_m_q14[k]: of the terrain, and what the cell's height lacks to that of the blend.
  *
- * Points beside the own ones of a tile are read, too. Cost: 31 a cell where all that is around is
- * of one class and height, up to 59 elsewhere. */
+ * Points beside the own ones of a tile are read, too. Cost: 27 a cell where all that is around is
+ * of one class and height, up to 51 elsewhere, and 6 more if it is not stepped. */
 void lm_k_tile_blend(const struct lm_k_blend *map, const struct lm_tile_coords *places,
                      uint32_t first, uint32_t groups, uint32_t *cell, int32_t *elevation_m_q14);
 
