@@ -21,10 +21,10 @@ $(GEN)/bin/%:
 	$(Q)$(HOSTCC) $^ -lm -o $@
 
 gen_objs = $(patsubst %.c,$(GEN)/host/%.o,$(1))
-GEN_error := $(call gen_objs,$(addprefix host-sim/lib/,atomic_file.c error.c input_file.c json.c report.c))
+GEN_base := $(call gen_objs,$(addprefix host-sim/lib/,atomic_file.c error.c input_file.c json.c number.c report.c))
 GEN_options := $(call gen_objs,$(addprefix host-sim/lib/,menu.c options.c options_help.c manual.c output_path.c))
 
-$(GEN)/bin/tables: $(call gen_objs,$(wildcard host-sim/tables/*.c host-sim/programs/tables/*.c)) $(GEN_options) $(GEN_error)
+$(GEN)/bin/tables: $(call gen_objs,$(wildcard host-sim/tables/*.c host-sim/programs/tables/*.c)) $(GEN_options) $(GEN_base)
 $(GEN)/fixed/src/tables.c: SET := fixed
 $(GEN)/firmware/clutter/grain_table.c: SET := grain
 $(GEN)/firmware/clutter/noise_table.c: SET := noise
@@ -41,7 +41,7 @@ $(GEN)/host/libbus.a: $(GEN_bus)
 	@rm -f $@
 	$(Q)$(HOSTAR) rcs $@ $^
 $(GEN)/bin/bus_table: $(call gen_objs,$(addprefix host-sim/,programs/bus_table/main.c bus/print_c.c bus/table_text.c)) \
-    $(GEN_error) $(GEN)/host/libbus.a
+    $(GEN_base) $(GEN)/host/libbus.a
 $(GEN)/firmware/bus/bus_generic.c: $(GEN)/bin/bus_table $(BUS_TABLE) $(GEN)/bus_table.name
 	@mkdir -p $(@D)
 	$(Q)$< $(BUS_TABLE) $@

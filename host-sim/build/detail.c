@@ -3,6 +3,7 @@
 #include "fx/crc32c.h"
 #include "hs/angle.h"
 #include "hs/error.h"
+#include "hs/number.h"
 #include "hs/text_file.h"
 #include "image/codes.h"
 #include "image/grid.h"
@@ -52,8 +53,8 @@ struct box {
 
 static bool read_place(char *const *words, double place[2])
 {
-    return db_text_number(words[0], -89.9, 89.9, &place[0]) &&
-           db_text_number(words[1], -180, 360, &place[1]);
+    return hs_number_within(words[0], -89.9, 89.9, &place[0]) &&
+           hs_number_within(words[1], -180, 360, &place[1]);
 }
 
 /* ---- boxes to items ---- */
@@ -157,10 +158,10 @@ static int read_building(struct reading *r, char *const *words, int count)
     struct box box = {.kind = LM_DETAIL_BLOCK};
     const bool is_gabled = count == 8 && strcmp(words[7], "gabled") == 0;
     if (count != 8 || !read_place(words + 1, place) ||
-        !db_text_number(words[3], 0.1, 2000, &box.length_m) ||
-        !db_text_number(words[4], 0.1, 2000, &box.width_m) ||
-        !db_text_number(words[5], -360, 360, &box.turn_deg) ||
-        !db_text_number(words[6], 0.1, 1000, &box.height_m) ||
+        !hs_number_within(words[3], 0.1, 2000, &box.length_m) ||
+        !hs_number_within(words[4], 0.1, 2000, &box.width_m) ||
+        !hs_number_within(words[5], -360, 360, &box.turn_deg) ||
+        !hs_number_within(words[6], 0.1, 1000, &box.height_m) ||
         (!is_gabled && strcmp(words[7], "flat") != 0)) {
         return db_text_error(&r->file, building_form,
                              "a number is missing or out of its range, or the roof is none");
@@ -176,7 +177,7 @@ static int read_wall(struct reading *r, char *const *words, int count)
     double from[2], to[2];
     struct box box = {.kind = LM_DETAIL_BLOCK, .width_m = wall_width_m};
     if (count != 6 || !read_place(words + 1, from) || !read_place(words + 3, to) ||
-        !db_text_number(words[5], 0.1, 1000, &box.height_m)) {
+        !hs_number_within(words[5], 0.1, 1000, &box.height_m)) {
         return db_text_error(&r->file, wall_form, "a number is missing or out of its range");
     }
     return needs_structure(r) == 0 ? add_run(r, from, to, &box) : -1;
@@ -204,7 +205,7 @@ static int read_mast(struct reading *r, char *const *words, int count)
     double place[2];
     struct box box = {.kind = LM_DETAIL_BLOCK, .length_m = mast_width_m, .width_m = mast_width_m};
     if (count != 4 || !read_place(words + 1, place) ||
-        !db_text_number(words[3], 0.1, 1000, &box.height_m)) {
+        !hs_number_within(words[3], 0.1, 1000, &box.height_m)) {
         return db_text_error(&r->file, mast_form, "a number is missing or out of its range");
     }
     box.latitude = place[0];

@@ -3,6 +3,7 @@
 #include "fx/crc32c.h"
 #include "hs/angle.h"
 #include "hs/error.h"
+#include "hs/number.h"
 #include "hs/text_file.h"
 #include "image/path.h"
 #include "image/scatterer_kinds.h"
@@ -33,7 +34,7 @@ static const char via_form[] =
 static bool read_numbers(char *const *words, int count, double *numbers, double low, double high)
 {
     for (int i = 0; i < count; i++) {
-        if (!db_text_number(words[i], low, high, &numbers[i])) {
+        if (!hs_number_within(words[i], low, high, &numbers[i])) {
             return false;
         }
     }

@@ -1,6 +1,7 @@
 #include "bus/table_text.h"
 
 #include "hs/error.h"
+#include "hs/number.h"
 #include "lm/canas.h"
 
 #include <errno.h>
@@ -50,9 +51,7 @@ static int read_integer(const struct reader *r, const char *key, const char *tex
 
 static int read_real(const struct reader *r, const char *key, const char *text, double *value)
 {
-    char *end;
-    *value = strtod(text, &end);
-    if (end == text || *end != '\0' || !isfinite(*value) || fabs(*value) > 1e12) {
+    if (!hs_number_within(text, -1e12, 1e12, value)) {
         return wrong(r, NULL, "is not a number", key);
     }
     return 0;

@@ -2,6 +2,7 @@
 
 #include "gis/band_walk.h"
 #include "hs/error.h"
+#include "hs/number.h"
 #include "hs/text_file.h"
 
 #include <inttypes.h>
@@ -23,8 +24,8 @@ static bool read_codes(const char *text, int *low, int *high)
     memcpy(first, text, length);
     first[length] = '\0';
     const char *last = text[length] == '-' ? text + length + 1 : first;
-    if (!db_text_number(first, 0, DB_CODES - 1, &number[0]) ||
-        !db_text_number(last, number[0], DB_CODES - 1, &number[1])) {
+    if (!hs_number_within(first, 0, DB_CODES - 1, &number[0]) ||
+        !hs_number_within(last, number[0], DB_CODES - 1, &number[1])) {
         return false;
     }
     *low = (int)number[0];

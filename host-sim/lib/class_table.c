@@ -2,6 +2,7 @@
 
 #include "hs/atomic_file.h"
 #include "hs/error.h"
+#include "hs/number.h"
 #include "hs/text_file.h"
 
 #include <math.h>
@@ -95,12 +96,10 @@ static int find_word(const char *const *words, int count, const char *word)
 static bool read_numbers(const char *text, int count, double *numbers, double low, double high)
 {
     for (int i = 0; i < count; i++) {
-        char *end;
-        numbers[i] = strtod(text, &end);
-        if (end == text || !(numbers[i] >= low && numbers[i] <= high)) {
+        text = hs_number_begin(text, &numbers[i]);
+        if (!text || !(numbers[i] >= low && numbers[i] <= high)) {
             return false;
         }
-        text = end;
     }
     return *text == '\0';
 }

@@ -1,4 +1,5 @@
 #include "hs/options.h"
+#include "hs/number.h"
 
 #include "hs/atomic_file.h"
 #include "hs/error.h"
@@ -7,8 +8,6 @@
 #include "hs/report.h"
 #include "options_help.h"
 
-#include <errno.h>
-#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -60,21 +59,6 @@ static int add_items(struct hs_list *list, const char *text)
     return 0;
 }
 
-/* The whole of `text` as a finite number. */
-static bool parse_number(const char *text, double *number)
-{
-    char *end;
-    errno = 0;
-    *number = strtod(text, &end);
-    return errno == 0 && end != text && *end == '\0' && isfinite(*number);
-}
-
-/* Also false when `text` is no number. */
-static bool read_within(const struct hs_option *o, const char *text, double *number)
-{
-    return parse_number(text, number) && *number >= o->low && *number <= o->high;
-}
-
 /* Which of the words between the bars, or -1. */
 static int choice_of(const char *words, const char *text)
 {
@@ -90,8 +74,8 @@ static int choice_of(const char *words, const char *text)
 
 static const char *store_number(const struct hs_option *o, const char *text)
 {
-    double number;
-    const bool is_within = read_within(o, text, &number);
+    double number = 0;
+    const bool is_within = hs_number_within(text, o->low, o->high, &number);
     if (o->kind == HS_REAL) {
         if (!is_within) {
             return "needs a number within its range";
@@ -300,7 +284,7 @@ void hs_list_free(struct hs_list *list)
 int hs_split_word_number(const char *text, char *word, size_t word_size, double *number)
 {
     const size_t length = strcspn(text, ":");
-    if (text[length] != ':' || length >= word_size || !parse_number(text + length + 1, number)) {
+    if (text[length] != ':' || length >= word_size || !hs_number(text + length + 1, number)) {
         return -1;
     }
     memcpy(word, text, length);

@@ -93,13 +93,6 @@ int db_text_words(char *line, char **words, int most)
     return count;
 }
 
-bool db_text_number(const char *word, double low, double high, double *number)
-{
-    char *end;
-    *number = strtod(word, &end);
-    return end != word && *end == '\0' && *number >= low && *number <= high;
-}
-
 void db_text_close(struct db_text_file *f)
 {
     if (f->stream) {

@@ -1,5 +1,7 @@
 #include "nav/parse.h"
 
+#include "hs/number.h"
+
 #include <ctype.h>
 #include <math.h>
 #include <stdio.h>
@@ -20,17 +22,6 @@ char *nav_next_line(char **text)
     }
     *end = '\0';
     return line;
-}
-
-bool nav_parse_number(const char *text, double *value)
-{
-    char *end;
-    /* strtod would also read hexadecimal, "nan" and "infinity". */
-    if (text[strspn(text, "0123456789+-.eE \t")] != '\0') {
-        return false;
-    }
-    *value = strtod(text, &end);
-    return end != text && end[strspn(end, " \t")] == '\0' && isfinite(*value);
 }
 
 /* Hours and minutes of an offset from UTC, in seconds; `text` is what follows the seconds. */
@@ -79,7 +70,7 @@ static bool parse_iso_time(const char *text, int64_t *time_us)
 bool nav_parse_time(const char *text, int64_t *time_us)
 {
     double count;
-    if (!nav_parse_number(text, &count)) {
+    if (!hs_number(text, &count)) {
         return parse_iso_time(text, time_us);
     }
     const double unit_us = count < 1e11 ? 1e6 : count < 1e14 ? 1e3 : 1;

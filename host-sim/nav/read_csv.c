@@ -3,6 +3,7 @@
 #include "read_formats.h"
 
 #include "hs/error.h"
+#include "hs/number.h"
 #include "nav/parse.h"
 
 #include <math.h>
@@ -172,7 +173,7 @@ static const char *read_fix(const struct csv *c, char *line, struct nav_fix *fix
             continue;
         }
         double value;
-        if (!nav_parse_number(field, &value)) {
+        if (!hs_number(field, &value)) {
             return "a field is not a number";
         }
         *(double *)(void *)((char *)fix + column->offset) = value * column->scale;

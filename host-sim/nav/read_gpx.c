@@ -2,6 +2,7 @@
  * leg, because GPX says that a track is broken there. As a route: points of routes (rtept) or of
  * tracks, whichever the file has first. Elevations are above mean sea level; geoidheight, that of
  * the geoid above the ellipsoid. */
+#include "hs/number.h"
 #include "nav/parse.h"
 #include "read_formats.h"
 #include "read_xml.h"
@@ -26,9 +27,9 @@ static void begin_point(struct gpx *g, const char **attributes)
     bool has_latitude = false, has_longitude = false;
     for (; attributes[0]; attributes += 2) {
         if (strcmp(attributes[0], "lat") == 0) {
-            has_latitude = nav_parse_number(attributes[1], &g->fix.latitude_deg);
+            has_latitude = hs_number(attributes[1], &g->fix.latitude_deg);
         } else if (strcmp(attributes[0], "lon") == 0) {
-            has_longitude = nav_parse_number(attributes[1], &g->fix.longitude_deg);
+            has_longitude = hs_number(attributes[1], &g->fix.longitude_deg);
         }
     }
     if (!has_latitude || !has_longitude) {
@@ -65,7 +66,7 @@ static void end_value(struct gpx *g, const char *name, const char *text)
     if (strcmp(name, "time") == 0) {
         g->has_time = nav_parse_time(text, &g->fix.time_us);
         g->fault = g->has_time ? g->fault : "the time cannot be read";
-    } else if (value && !nav_parse_number(text, value)) {
+    } else if (value && !hs_number(text, value)) {
         g->fault = "a value of the point is not a number";
     }
 }

@@ -8,6 +8,7 @@
 #include "read_xml.h"
 
 #include "hs/error.h"
+#include "hs/number.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -68,7 +69,7 @@ static int cut_numbers(char *text, const char *separators, double value[3])
         if (*part == '\0' && *separators != ',') {
             continue;
         }
-        if (count == 3 || !nav_parse_number(part, &value[count])) {
+        if (count == 3 || !hs_number(part, &value[count])) {
             return -1;
         }
         count++;

@@ -2,6 +2,7 @@
 
 #include "hs/atomic_file.h"
 #include "hs/error.h"
+#include "hs/number.h"
 #include "hs/text_file.h"
 #include "netem/chip.h"
 
@@ -79,9 +80,7 @@ static int take_number(const char *word, double low, double high, double *number
     if (strcmp(word, "-") == 0) {
         return 1;
     }
-    char *end;
-    *number = strtod(word, &end);
-    return end != word && *end == '\0' && *number >= low && *number <= high;
+    return hs_number_within(word, low, high, number);
 }
 
 static int take_set(const char *word, enum nm_set *set)

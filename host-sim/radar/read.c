@@ -2,6 +2,7 @@
 #include "radar/text.h"
 
 #include "hs/error.h"
+#include "hs/number.h"
 #include "hs/sensor.h"
 #include "hs/text_file.h"
 #include "lm/sensor.h"
@@ -104,7 +105,7 @@ static int take_number(struct reading *r, const struct radar_key *key, const cha
     const struct radar_unit *unit = radar_unit_of(field);
     char low[RADAR_NUMBER_SIZE], high[RADAR_NUMBER_SIZE];
     double number;
-    if (!db_text_number(word, -1e9, 1e9, &number)) {
+    if (!hs_number_within(word, -1e9, 1e9, &number)) {
         return db_text_error(&r->file, see_print, "%s: '%s' is no number", key->text, word);
     }
     if (unit->is_whole && number != floor(number)) {

@@ -4,6 +4,7 @@
 #include "hs/angle.h"
 #include "hs/error.h"
 #include "hs/input_file.h"
+#include "hs/number.h"
 #include "lm/radar.h"
 
 #include <errno.h>
@@ -20,14 +21,6 @@ struct line_events {
     int count;
     char refusal[REFUSAL_BYTES]; /* why the radar cannot do it; "": the words are not understood */
 };
-
-/* All of `word` as a number within the limits. */
-static bool number(const char *word, double low, double high, double *value)
-{
-    char *end;
-    *value = strtod(word, &end);
-    return end != word && *end == 0 && *value >= low && *value <= high;
-}
 
 static bool choice(const char *word, const char *const *names, int count, int32_t *index)
 {
@@ -57,7 +50,8 @@ static bool parse_effects(char **words, int count, struct lm_sar_command *sar)
 static bool place(char **words, struct lm_position *at)
 {
     double lat, lon;
-    if (!number(words[0], -90, 90, &lat) || !number(words[1], -180, 180, &lon)) {
+    if (!hs_number_within(words[0], -90, 90, &lat) ||
+        !hs_number_within(words[1], -180, 180, &lon)) {
         return false;
     }
     *at = (struct lm_position){hs_bam(lat), hs_bam(lon)};
@@ -70,12 +64,13 @@ static bool parse_sar(char **words, int count, struct lm_control *c)
     double cell, look = 0, range = 0, height = 0;
     const bool is_from_ownship = strcmp(words[1], "sar") == 0;
     const int least = is_from_ownship ? 5 : 8;
-    if (count < least || !place(words + 2, &centre) || !number(words[4], 0.1, 1000, &cell)) {
+    if (count < least || !place(words + 2, &centre) ||
+        !hs_number_within(words[4], 0.1, 1000, &cell)) {
         return false;
     }
-    if (!is_from_ownship &&
-        (!number(words[5], -360, 360, &look) || !number(words[6], 0, 1e6, &range) ||
-         !number(words[7], -500, 30000, &height))) {
+    if (!is_from_ownship && (!hs_number_within(words[5], -360, 360, &look) ||
+                             !hs_number_within(words[6], 0, 1e6, &range) ||
+                             !hs_number_within(words[7], -500, 30000, &height))) {
         return false;
     }
     c->kind = LM_CONTROL_SAR;
@@ -111,7 +106,7 @@ static bool has_scale(const struct script *s, struct line_events *line)
 static bool parse_range(struct script *s, const char *word, struct line_events *line)
 {
     double range_nm;
-    if (!number(word, 1, 999, &range_nm)) {
+    if (!hs_number_within(word, 1, 999, &range_nm)) {
         return false;
     }
     s->range_nm = (int32_t)range_nm;
@@ -128,7 +123,7 @@ static bool parse_range(struct script *s, const char *word, struct line_events *
 static bool parse_azimuth(const struct lm_radar *radar, const char *word, struct lm_control *c)
 {
     double degrees;
-    if (!number(word, 0, 90, &degrees) || degrees != floor(degrees)) {
+    if (!hs_number_within(word, 0, 90, &degrees) || degrees != floor(degrees)) {
         return false;
     }
     c->kind = LM_CONTROL_AZIMUTH;
@@ -157,7 +152,7 @@ static bool parse_choice(struct script *s, char **words, int count, struct line_
     }
     double gain;
     c->kind = LM_CONTROL_GAIN;
-    if (strcmp(words[1], "gain") != 0 || !number(words[2], -30, 30, &gain)) {
+    if (strcmp(words[1], "gain") != 0 || !hs_number_within(words[2], -30, 30, &gain)) {
         return false;
     }
     c->gain_db = (int32_t)lround(gain);
@@ -181,8 +176,8 @@ static bool parse_button(char **words, int count, struct line_events *line)
     double held_s = PRESS_US / 1e6, osb;
     int32_t button;
     if (strcmp(words[1], "osb") == 0) {
-        if (count < 3 || count > 4 || !number(words[2], 1, LM_OSBS, &osb) || osb != floor(osb) ||
-            (count == 4 && !number(words[3], 0, 3600, &held_s))) {
+        if (count < 3 || count > 4 || !hs_number_within(words[2], 1, LM_OSBS, &osb) ||
+            osb != floor(osb) || (count == 4 && !hs_number_within(words[3], 0, 3600, &held_s))) {
             return false;
         }
         button = (int32_t)osb;
@@ -203,8 +198,9 @@ static bool parse_deflection(char **words, int count, struct line_events *line)
 {
     const bool is_slew = strcmp(words[1], "slew") == 0;
     double x, y = 0, for_s = 0;
-    if (count != (is_slew ? 5 : 3) || !number(words[2], -1, 1, &x) ||
-        (is_slew && (!number(words[3], -1, 1, &y) || !number(words[4], 0, 3600, &for_s)))) {
+    if (count != (is_slew ? 5 : 3) || !hs_number_within(words[2], -1, 1, &x) ||
+        (is_slew && (!hs_number_within(words[3], -1, 1, &y) ||
+                     !hs_number_within(words[4], 0, 3600, &for_s)))) {
         return false;
     }
     const int32_t x_deflection = (int32_t)lround(x * LM_FULL_DEFLECTION);
@@ -270,8 +266,9 @@ static bool parse_plain(const char *word, struct lm_control *c)
 static bool add_rain(char **words, int count, struct lm_environment *e)
 {
     double radius_km, mm_per_h;
-    if (count != 6 || e->rain_count == LM_RAINS_MAX || !number(words[4], 0.1, 100, &radius_km) ||
-        !number(words[5], 1, 150, &mm_per_h)) {
+    if (count != 6 || e->rain_count == LM_RAINS_MAX ||
+        !hs_number_within(words[4], 0.1, 100, &radius_km) ||
+        !hs_number_within(words[5], 1, 150, &mm_per_h)) {
         return false;
     }
     struct lm_rain *rain = &e->rain[e->rain_count++];
@@ -283,7 +280,8 @@ static bool add_rain(char **words, int count, struct lm_environment *e)
 static bool add_jammer(char **words, int count, struct lm_environment *e)
 {
     double ratio_db;
-    if (count != 5 || e->jammer_count == LM_JAMMERS_MAX || !number(words[4], -20, 80, &ratio_db)) {
+    if (count != 5 || e->jammer_count == LM_JAMMERS_MAX ||
+        !hs_number_within(words[4], -20, 80, &ratio_db)) {
         return false;
     }
     struct lm_jammer *jammer = &e->jammer[e->jammer_count++];
@@ -305,14 +303,14 @@ static bool parse_environment(char **words, int count, struct lm_environment *e)
         e->rain_count = e->jammer_count = 0;
         return count == 3 && strcmp(words[2], "fair") == 0;
     }
-    if (count < 3 || count > 4 || !number(words[2], 0, LM_SEA_STATE_MAX, &state) ||
+    if (count < 3 || count > 4 || !hs_number_within(words[2], 0, LM_SEA_STATE_MAX, &state) ||
         state != floor(state)) {
         return false;
     }
     e->sea_state = (uint8_t)state;
     e->is_sea_commanded = true;
     e->has_wind = count == 4;
-    if (e->has_wind && !number(words[3], -180, 360, &wind_deg)) {
+    if (e->has_wind && !hs_number_within(words[3], -180, 360, &wind_deg)) {
         return false;
     }
     e->wind_from = hs_bam(wind_deg);
@@ -327,7 +325,7 @@ static bool parse_line(struct script *s, char **words, int count, struct line_ev
     struct script_event *e = &line->event[0];
     memset(line, 0, sizeof *line);
     line->count = 1;
-    if (count < 2 || !number(words[0], 0, 1e6, &seconds)) {
+    if (count < 2 || !hs_number_within(words[0], 0, 1e6, &seconds)) {
         return false;
     }
     e->time_us = (uint64_t)llround(seconds * 1e6);
@@ -409,7 +407,7 @@ static void find_reason(const struct script *s, char **words, int count, char te
     int32_t which;
     double seconds;
     const size_t size = REFUSAL_BYTES;
-    if (!number(words[0], 0, 1e6, &seconds)) {
+    if (!hs_number_within(words[0], 0, 1e6, &seconds)) {
         snprintf(text, size, "begins with `%.40s`, which is no time in seconds", words[0]);
     } else if (count < 2) {
         snprintf(text, size, "has a time but no command");

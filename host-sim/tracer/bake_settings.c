@@ -3,6 +3,7 @@
 #include "bake_sheet.h"
 
 #include "hs/error.h"
+#include "hs/number.h"
 #include "hs/report.h"
 
 #include <inttypes.h>
@@ -61,9 +62,8 @@ static int read_depressions(const struct bake_settings *s, struct bake_looks *lo
     }
     double last = 0;
     for (int i = 0; i < s->depressions.count; i++) {
-        char *end;
-        const double degrees = strtod(s->depressions.items[i], &end);
-        if (*end != '\0' || !(degrees >= 1 && degrees <= 89 && degrees > last)) {
+        double degrees;
+        if (!hs_number_within(s->depressions.items[i], 1, 89, &degrees) || degrees <= last) {
             return hs_error("--depressions", "give rising numbers from 1 to 89",
                             "\"%s\" will not do", s->depressions.items[i]);
         }

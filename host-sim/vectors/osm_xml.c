@@ -1,5 +1,6 @@
 /* OpenStreetMap as XML, by expat. */
 #include "hs/error.h"
+#include "hs/number.h"
 #include "hs/progress.h"
 #include "hs/text_file.h"
 #include "osm_reading.h"
@@ -57,7 +58,7 @@ static bool read_id(const char *text, int64_t *id)
 
 static bool read_degrees(const char *text, double *value)
 {
-    return text && db_text_number(text, -1000, 1000, value);
+    return text && hs_number_within(text, -1000, 1000, value);
 }
 
 /* Keep a text; where it begins, or SIZE_MAX out of memory. */

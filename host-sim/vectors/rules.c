@@ -1,6 +1,7 @@
 #include "vectors/rules.h"
 
 #include "hs/error.h"
+#include "hs/number.h"
 #include "hs/text_file.h"
 
 #include <math.h>
@@ -67,10 +68,9 @@ int vector_rules_find(const struct vector_rules *rules, unsigned shapes,
 static bool read_metres(const char *text, double *metres)
 {
     static const double foot_m = 0.3048;
-    char *end;
     double inches;
-    *metres = strtod(text, &end);
-    if (end == text || !isfinite(*metres)) {
+    const char *end = hs_number_begin(text, metres);
+    if (!end) {
         return false;
     }
     end += strspn(end, " ");
@@ -79,10 +79,12 @@ static bool read_metres(const char *text, double *metres)
         return true;
     }
     if (*end == '\'') {
-        const char *rest = end + 1;
-        inches = strtod(rest, &end);
+        end = hs_number_begin(end + 1, &inches);
+        if (!end || strcmp(end, "\"") != 0) {
+            return false;
+        }
         *metres = (*metres + inches / 12) * foot_m;
-        return end != rest && strcmp(end, "\"") == 0;
+        return true;
     }
     return *end == '\0' || strcmp(end, "m") == 0;
 }
@@ -188,15 +190,16 @@ static int read_conditions(const struct reading *r, char *value, struct vector_c
 static int read_term(const struct reading *r, char *text, struct vector_term *t)
 {
     char *words[3];
+    double unused;
     const int count = db_text_words(text, words, 3);
     *t = (struct vector_term){.factor = 1};
-    if (count == 1 && db_text_number(words[0], 0, VECTOR_METRES_MAX, &t->factor)) {
+    if (count == 1 && hs_number_within(words[0], 0, VECTOR_METRES_MAX, &t->factor)) {
         return 0;
     }
     t->factor = 1;
     if ((count == 1 || (count == 3 && strcmp(words[1], "x") == 0 &&
-                        db_text_number(words[2], 0.001, 1000, &t->factor))) &&
-        strtod(words[0], NULL) == 0) {
+                        hs_number_within(words[2], 0.001, 1000, &t->factor))) &&
+        !hs_number_begin(words[0], &unused)) {
         return copy_text(r, t->tag, sizeof t->tag, words[0]);
     }
     return db_text_error(&r->file, "write tag, tag x FACTOR, or metres, with commas between",
@@ -268,7 +271,7 @@ static const char *const key_names[KEYS] = {"from",   "where",  "leave_out", "cl
 static int read_order(const struct reading *r, const char *value, int *order)
 {
     double number;
-    if (!db_text_number(value, 0, 99, &number) || number != floor(number)) {
+    if (!hs_number_within(value, 0, 99, &number) || number != floor(number)) {
         return db_text_error(&r->file, "write a whole number 0..99", "`%s` is no order", value);
     }
     *order = (int)number;

@@ -1,17 +1,16 @@
 #include "area_option.h"
 
 #include "hs/error.h"
+#include "hs/number.h"
 
 #include <math.h>
-#include <stdio.h>
+#include <stddef.h>
 
 int db_area_read(struct image_area *area, const char *text)
 {
     double d[4];
-    char end;
-    if (sscanf(text, "%lf,%lf,%lf,%lf%c", &d[0], &d[1], &d[2], &d[3], &end) != 4 ||
-        !(d[0] >= -90 && d[2] <= 90 && d[0] < d[2]) || !(fabs(d[1]) <= 360 && fabs(d[3]) <= 360) ||
-        d[1] == d[3]) {
+    if (hs_numbers(text, ',', d, 4) != 4 || !(d[0] >= -90 && d[2] <= 90 && d[0] < d[2]) ||
+        !(fabs(d[1]) <= 360 && fabs(d[3]) <= 360) || d[1] == d[3]) {
         return hs_error("--area", "write it as 36.5,14.2,36.6,14.4",
                         "must be south,west,north,east in degrees");
     }

@@ -8,6 +8,7 @@
 #include "gis/gdal_start.h"
 #include "gis/sensor_tag.h"
 #include "hs/error.h"
+#include "hs/number.h"
 #include "hs/options.h"
 #include "hs/report.h"
 #include "image/codes.h"
@@ -149,9 +150,8 @@ static int usage_error(const char *option, const char *cause)
 static int parse_centre(const char *text, uint32_t centre[2])
 {
     double degrees[2];
-    char end;
-    if (sscanf(text, "%lf,%lf%c", &degrees[0], &degrees[1], &end) != 2 ||
-        !(fabs(degrees[0]) <= 90) || !(fabs(degrees[1]) <= 360)) {
+    if (hs_numbers(text, ',', degrees, 2) != 2 || !(fabs(degrees[0]) <= 90) ||
+        !(fabs(degrees[1]) <= 360)) {
         return usage_error("--centre", "must be LATITUDE,LONGITUDE in degrees");
     }
     centre[0] = (uint32_t)image_bam(degrees[0]);

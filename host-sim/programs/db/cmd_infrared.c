@@ -9,6 +9,7 @@
 #include "gis/class_raster.h"
 #include "gis/preview.h"
 #include "hs/error.h"
+#include "hs/number.h"
 #include "hs/output_path.h"
 #include "hs/png.h"
 #include "hs/progress.h"
@@ -150,9 +151,9 @@ static int take_hours(struct work *w)
         return hs_error("--hours", NULL, "names more than %d hours", HOURS_MAX);
     }
     for (int i = 0; i < w->hour_count; i++) {
-        char *end = NULL;
-        w->hours[i] = list->count > 0 ? strtod(list->items[i], &end) : usual[i];
-        if (end && (*end != '\0' || !(w->hours[i] >= 0 && w->hours[i] < 24))) {
+        w->hours[i] = usual[i % 2];
+        if (list->count > 0 &&
+            (!hs_number_within(list->items[i], 0, 24, &w->hours[i]) || w->hours[i] == 24)) {
             return hs_error("--hours", "give hours from 0 to below 24, such as 4,13.5",
                             "`%s` is no hour", list->items[i]);
         }

@@ -8,6 +8,7 @@
 #include "classify/split.h"
 #include "hs/atomic_file.h"
 #include "hs/error.h"
+#include "hs/number.h"
 #include "hs/report.h"
 #include "hs/text_file.h"
 
@@ -356,7 +357,7 @@ static int read_priors(const struct work *w, double *prior)
             return hs_error("--priors", "name classes of the class table",
                             "there is no class `%s`; there are %s", word, names);
         }
-        if (!db_text_number(equals + 1, 0, 1e9, &prior[c])) {
+        if (!hs_number_within(equals + 1, 0, 1e9, &prior[c])) {
             return hs_error("--priors", "give a number of 0 or more", "`%s` is no share",
                             equals + 1);
         }

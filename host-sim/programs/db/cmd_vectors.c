@@ -2,6 +2,7 @@
 
 #include "gis/class_raster.h"
 #include "hs/error.h"
+#include "hs/number.h"
 #include "hs/options.h"
 #include "hs/report.h"
 #include "vectors/output.h"
@@ -88,11 +89,12 @@ struct job {
 
 static int parse_area(const char *text, struct vector_area *a)
 {
-    char end;
-    if (sscanf(text, "%lf,%lf,%lf,%lf%c", &a->south, &a->west, &a->north, &a->east, &end) != 4) {
+    double d[4];
+    if (hs_numbers(text, ',', d, 4) != 4) {
         return hs_error("--area", "write SOUTH,WEST,NORTH,EAST in degrees", "`%s` is no area",
                         text);
     }
+    *a = (struct vector_area){.south = d[0], .west = d[1], .north = d[2], .east = d[3]};
     return 0;
 }
 

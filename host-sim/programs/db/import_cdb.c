@@ -2,6 +2,7 @@
 #include "import.h"
 
 #include "hs/error.h"
+#include "hs/number.h"
 #include "hs/report.h"
 #include "visual/cdb_models.h"
 
@@ -15,15 +16,15 @@ static const char rasters[] = ".tif\0.jp2\0";
 
 static int read_area(const struct import_options *o, struct cdb_area *a)
 {
-    char end;
+    double d[4];
     if (!o->area) {
         return 0;
     }
-    if (sscanf(o->area, "%lf,%lf,%lf,%lf%c", &a->south, &a->west, &a->north, &a->east, &end) != 4 ||
-        !(a->south < a->north) || !(a->west < a->east)) {
+    if (hs_numbers(o->area, ',', d, 4) != 4 || d[0] >= d[2] || d[1] >= d[3]) {
         return hs_error("--area", "give SOUTH,WEST,NORTH,EAST in degrees", "`%s` is no area",
                         o->area);
     }
+    *a = (struct cdb_area){.south = d[0], .west = d[1], .north = d[2], .east = d[3]};
     return 0;
 }
 

@@ -2,6 +2,7 @@
 #include "import.h"
 
 #include "hs/error.h"
+#include "hs/number.h"
 #include "hs/report.h"
 
 #include <math.h>
@@ -44,9 +45,8 @@ struct frame {
 
 static int read_numbers(const char *option, const char *text, double numbers[3])
 {
-    char end;
     numbers[2] = 0;
-    const int found = sscanf(text, "%lf,%lf,%lf%c", &numbers[0], &numbers[1], &numbers[2], &end);
+    const int found = hs_numbers(text, ',', numbers, 3);
     if (found != 2 && found != 3) {
         return hs_error(option, "see landmass-db import --help",
                         "`%s` is not two numbers, or three with a height", text);

@@ -1,32 +1,12 @@
 #include "options.h"
 
 #include "hs/error.h"
+#include "hs/number.h"
 #include "hs/options.h"
 #include "nav/parse.h"
 
 #include <math.h>
 #include <string.h>
-
-/* Numbers between commas; returns how many, or -1 for anything else or more than `most`. */
-static int take_list(const char *text, double *value, int most)
-{
-    char copy[256];
-    if (strlen(text) >= sizeof copy) {
-        return -1;
-    }
-    strcpy(copy, text);
-    int n = 0;
-    for (char *p = copy, *next; p; p = next, n++) {
-        next = strchr(p, ',');
-        if (next) {
-            *next++ = '\0';
-        }
-        if (n == most || !nav_parse_number(p, &value[n])) {
-            return -1;
-        }
-    }
-    return n;
-}
 
 static bool is_place(double latitude_deg, double longitude_deg)
 {
@@ -37,7 +17,7 @@ static const char *take_circle(void *context, const char *text)
 {
     struct command *c = context;
     double v[6] = {0};
-    const int n = take_list(text, v, 6);
+    const int n = hs_numbers(text, ',', v, 6);
     if (n < 5 || !is_place(v[0], v[1]) || fabs(v[2]) < 1 || fabs(v[2]) > 1e6 || v[4] <= 0 ||
         v[4] > 10000) {
         return "needs LAT,LON,RADIUS_M,HEIGHT_M,SPEED_MS[,START_DEG] with a radius of 1..1000000 m "
@@ -52,7 +32,7 @@ static const char *take_straight(void *context, const char *text)
 {
     struct command *c = context;
     double v[5];
-    if (take_list(text, v, 5) != 5 || !is_place(v[0], v[1]) || v[4] < 0 || v[4] > 10000) {
+    if (hs_numbers(text, ',', v, 5) != 5 || !is_place(v[0], v[1]) || v[4] < 0 || v[4] > 10000) {
         return "needs LAT,LON,HEADING_DEG,HEIGHT_M,SPEED_MS with a speed of 0..10000 m/s";
     }
     c->straight = (struct nav_straight){v[0], v[1], v[2], v[3], v[4]};
@@ -63,7 +43,7 @@ static const char *take_straight(void *context, const char *text)
 static bool add_weather(struct command *c, bool is_jammer, const char *text)
 {
     double v[6];
-    return nav_weather_add(&c->send.weather, is_jammer, v, take_list(text, v, 6));
+    return nav_weather_add(&c->send.weather, is_jammer, v, hs_numbers(text, ',', v, 6));
 }
 
 static const char *take_rain(void *context, const char *text)

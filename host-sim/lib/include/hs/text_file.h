@@ -33,9 +33,6 @@ int db_text_split(char *line, char **key, char **value);
  * there are more than `most`; the entries of `words` behind the last are empty words. */
 int db_text_words(char *line, char **words, int most);
 
-/* The whole of a word as a number within low..high, ends included; false when it is none. */
-bool db_text_number(const char *word, double low, double high, double *number);
-
 /* Close the file and free the line. */
 void db_text_close(struct db_text_file *f);
 
