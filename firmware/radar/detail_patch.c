@@ -325,15 +325,17 @@ static void draw_roof(const struct lm_detail_shape *shape, int32_t first, int32_
     const uint32_t codes = shape->height_codes;
     const int32_t elevation_m_q14 = shape->elevation_m_q14, v_cell_q16 = shape->v_cell_q16;
     const bool is_flat = codes == ((codes << 4) | (codes & 15));
-    for (int32_t i = first; i < end; i++) {
-        ground->elevation_m_q14[i] = elevation_m_q14;
+    int32_t *elevation = ground->elevation_m_q14 + first;
+    uint32_t *cell = ground->cell + first;
+    const uint32_t *const behind = ground->cell + end;
+    while (is_flat && cell < behind) {
+        *elevation++ = elevation_m_q14;
+        *cell++ = top | (codes & 15);
     }
-    for (int32_t i = first; is_flat && i < end; i++) {
-        ground->cell[i] = top | (codes & 15);
-    }
-    for (int32_t i = first; !is_flat && i < end; i++, v_q16 += v_cell_q16) {
+    for (; cell < behind; v_q16 += v_cell_q16) {
         const uint32_t eighth = fx_min_u32(fx_abs_u32(v_q16) >> 13, 7);
-        ground->cell[i] = top | (codes >> (4 * eighth) & 15);
+        *elevation++ = elevation_m_q14;
+        *cell++ = top | (codes >> (4 * eighth) & 15);
     }
 }
 

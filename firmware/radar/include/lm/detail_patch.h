@@ -70,7 +70,7 @@ void lm_detail_patch_close(struct lm_detail_patch *p);
 
 /* Draw the detail of line `line` into its cells. `path` is the one that they were read along. Cost:
  * 5 instructions a cell, 13 for a shape that the line's block holds, 100 for one that the line
- * meets, and 7 for a cell that is drawn, at most LM_DETAIL_CELLS_A_LINE of them. */
+ * meets, and 5 for a cell that is drawn, at most LM_DETAIL_CELLS_A_LINE of them. */
 void lm_detail_patch_draw(const struct lm_detail_patch *p, uint32_t line,
                           const struct lm_ground_path *path, struct lm_scan_line *ground,
                           uint32_t cells);
