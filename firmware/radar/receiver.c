@@ -106,6 +106,7 @@ void lm_receiver_set(struct lm_receiver *r, const struct lm_radar *radar,
     r->first_m_q8 = slant->first_m_q8;
     r->cell_m_q8 = slant->cell_m_q8;
     r->cells = slant->cells;
+    r->hole = slant->hole;
     r->looks_log2 = fx_min_u32(radar->receiver.noise_looks_log2, LM_NOISE_LOOKS_LOG2_MAX);
     set_bins(r, radar, height_m_q10, range, fov);
     /* 2^32 times 2^21.3; over metres in Q8 it is bins in Q16. */
@@ -177,11 +178,16 @@ static inline uint32_t faded_q24(uint32_t power_q24, uint32_t speckle_q24)
     return product < UINT32_MAX ? (uint32_t)product : UINT32_MAX;
 }
 
-void lm_receiver_fade(const struct lm_receiver *r, const uint32_t *restrict speckle_q24,
-                      uint32_t *restrict power_q24)
+void lm_receiver_fade(const struct lm_receiver *r, uint32_t floor_q24,
+                      const uint32_t *restrict speckle_q24, uint32_t *restrict power_q24)
 {
-    for (uint32_t i = 0; i < r->cells; i++) {
+    const uint32_t most_q24 = UINT32_MAX - floor_q24;
+    for (uint32_t i = 0; i < r->hole; i++) {
         power_q24[i] = faded_q24(power_q24[i], speckle_q24[i]);
+    }
+    for (uint32_t i = r->hole; i < r->cells; i++) {
+        const uint32_t filled_q24 = fx_min_u32(power_q24[i], most_q24) + floor_q24;
+        power_q24[i] = faded_q24(filled_q24, speckle_q24[i]);
     }
 }
 

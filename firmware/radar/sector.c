@@ -55,6 +55,7 @@ void lm_sector_start(struct lm_sector *s, const struct lm_radar *radar,
     s->samples = 0;
     lm_antenna_pattern_set(&s->pattern, &radar->antenna);
     lm_beam_clear(&s->beam);
+    lm_sector_floor_clear(&s->floor);
 }
 
 uint32_t lm_sector_line_us(const struct lm_sector *s)
@@ -268,6 +269,9 @@ void lm_sector_begin(struct lm_sector *s, struct lm_tile_cache *tiles,
         lm_beam_clear(&s->beam); /* its samples were traced from another position */
     }
     set_tilt(s);
+    lm_sector_floor_set(&s->floor, fov_of(s)->ground_leak_db_q8,
+                        s->radar->sar.ground_leak_most_db_q8, s->radar->antenna.azimuth_beam,
+                        s->width);
     lm_class_lut_set(&s->class_lut, &s->radar->illumination, &tiles->db->classes);
     set_class_gain(s, &tiles->db->classes);
     set_sea(s, &tiles->db->classes);
@@ -572,8 +576,9 @@ static void prefetch(const struct lm_sector *s, struct lm_tile_cache *tiles)
     lm_scan_line_prefetch(tiles, s->lod, &path, s->grid.cells);
 }
 
-/* Fade the line's ground, and move on in the grain: a row of it is a two-way beam wide, B / (N root
- * 2). 362 is 256 root 2; a line is below 2^31, times 2^16 and 2^9. */
+/* Fill the line's ground with what it leaks, fade it, and move on in the grain: a row of it is a
+ * two-way beam wide, B / (N root 2). 362 is 256 root 2; a line is below 2^31, times 2^16 and 2^9.
+ */
 static void fade_line(struct lm_sector *s)
 {
     const struct lm_sector_taps *taps = taps_of_line(s);
@@ -582,7 +587,10 @@ static void fade_line(struct lm_sector *s)
     s->grain.step_q16 = s->receiver.grain_step_q16;
     lm_grain_curve_set(&curve, taps->looks_q8);
     lm_grain_powers(&curve, &s->grain, speckle_q24, s->slant.cells);
-    lm_receiver_fade(&s->receiver, speckle_q24, s->power_q24);
+    const uint32_t hole = s->slant.hole;
+    const uint32_t floor_q24 =
+        lm_sector_floor_run(&s->floor, s->line, s->power_q24 + hole, s->slant.cells - hole);
+    lm_receiver_fade(&s->receiver, floor_q24, speckle_q24, s->power_q24);
     s->grain.row_q16 += (uint64_t)s->width * taps->ratio_q8 * 362 / s->radar->antenna.azimuth_beam;
 }
 

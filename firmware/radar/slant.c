@@ -28,6 +28,10 @@ void lm_slant_set(struct lm_slant *s, uint32_t first_m_q8, uint32_t cell_m_q8, u
     for (uint32_t i = cells; i < cells + LM_LANES; i++) {
         s->cell_of[i] = (int32_t)grid->cells;
     }
+    s->hole = 0;
+    while (s->hole < cells && s->cell_of[s->hole] == (int32_t)grid->cells) {
+        s->hole++;
+    }
     s->pairs = 0;
     for (uint32_t i = 0; i < cells; i++) {
         const int32_t next = s->cell_of[i + 1];

@@ -83,7 +83,12 @@ const struct lm_radar lm_radar_default = {
                                 .fov_last = LM_FOV_EXP,
                                 .bars = 1,
                                 .tone = {LM_DB_Q8(-48), LM_DB_Q8(-6), 320}}},
-    /* Windows, azimuth limits, paces of the cursor and DBS rates (a quarter and a twentieth of the
+    /* What fills shadows: in DBS as in a patch below, by the same processing. UNSOURCED: in NORM
+     * the antenna's side lobes, between those of a uniform and of a cosine aperture, -25 and -48 dB
+     * both ways together; in EXP those of its code, between Barker's 13 chips as they are, -11.5
+     * dB, and weighted ones.
+     *
+     * Windows, azimuth limits, paces of the cursor and DBS rates (a quarter and a twentieth of the
      * base): [FreeFalcon]; sharpening by 8:1 and 64:1, and beam positions 2/5 of the beam apart,
      * whose pattern is then 1 dB weaker half-way between: UNSOURCED. Azimuths across a sample:
      * enough for the ground to err less than the speckle does
@@ -92,14 +97,16 @@ const struct lm_radar lm_radar_default = {
                              .range_max_nm = 80,
                              .slew_percent = 100,
                              .sharpening = 1,
-                             .azimuths_log2 = 1},
+                             .azimuths_log2 = 1,
+                             .ground_leak_db_q8 = LM_DB_Q8(-30)},
             [LM_FOV_EXP] = {.name = "EXP",
                             .range_max_nm = 80,
                             .slew_percent = 50,
                             .window_permille = 125,
                             .azimuth_half_max = FX_BAM_DEG(60),
                             .sharpening = 1,
-                            .azimuths_log2 = 2},
+                            .azimuths_log2 = 2,
+                            .ground_leak_db_q8 = LM_DB_Q8(-20)},
             [LM_FOV_DBS1] = {.name = "DBS1",
                              .bam_per_s = FX_BAM_DEG(15),
                              .range_max_nm = 40,
@@ -108,7 +115,8 @@ const struct lm_radar lm_radar_default = {
                              .azimuth_half_max = FX_BAM_DEG(15),
                              .sharpening = 8,
                              .beam_step = FX_BAM_DEG(132) / 100,
-                             .azimuths_log2 = 2},
+                             .azimuths_log2 = 2,
+                             .ground_leak_db_q8 = LM_DB_Q8(-16)},
             [LM_FOV_DBS2] = {.name = "DBS2",
                              .bam_per_s = FX_BAM_DEG(3),
                              .range_max_nm = 40,
@@ -117,7 +125,8 @@ const struct lm_radar lm_radar_default = {
                              .azimuth_half_max = FX_BAM_DEG(5),
                              .sharpening = 64,
                              .beam_step = FX_BAM_DEG(132) / 100,
-                             .azimuths_log2 = 2}},
+                             .azimuths_log2 = 2,
+                             .ground_leak_db_q8 = LM_DB_Q8(-16)}},
     /* UNSOURCED but for the formulas they go into: squints from 15 degrees, where Doppler
      * beam sharpening is usually said to begin, a minute of dwell at the most, a patch shown with
      * four looks, lines that glint within three degrees of broadside. */

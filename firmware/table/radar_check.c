@@ -91,6 +91,8 @@ static const struct lm_radar_field fields[] = {
     {"fov.sharpening", OF_FIELDS(sharpening), BETWEEN(1, LM_RADAR_SHARPENING_MAX)},
     {"fov.beam_step", OF_FIELDS(beam_step), BETWEEN(0, FX_BAM_DEG(20)), IN(BAM)},
     {"fov.azimuths_log2", OF_FIELDS(azimuths_log2), BETWEEN(0, LM_RADAR_AZIMUTHS_LOG2_MAX)},
+    {"fov.ground_leak_db_q8", OF_FIELDS(ground_leak_db_q8), SIGNED_BETWEEN(LM_DB_Q8(-100), 0),
+     IN(DB_Q8)},
     {"sar.cells", ONE(sar.cells), BETWEEN(32, LM_RADAR_PATCH_CELLS_MAX)},
     {"sar.cell_min_mm", ONE(sar.cell_min_mm), BETWEEN(100, 100000), IN(MM)},
     {"sar.cell_max_mm", ONE(sar.cell_max_mm), BETWEEN(100, 100000), IN(MM)},

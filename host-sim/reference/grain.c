@@ -95,16 +95,26 @@ double ref_grain_power(double looks, uint32_t start_row, uint32_t start_column, 
     return pow(10, (low_db + (next_db - low_db) * (halves - low)) / 10);
 }
 
-double ref_leak(struct ref_leak *leak, const struct ref_params *params, unsigned line,
-                const struct ref_bin *shown, size_t count)
+void ref_leak_line(struct ref_leak *leak, double most_db, unsigned lines_max, unsigned line,
+                   const double *power, size_t count)
 {
     double sum = 0;
     unsigned cells = 0;
     for (size_t i = line % 4; i < count; i += 4, cells++) {
-        sum += fmin(shown[i].ground + shown[i].veil, pow(10, params->leak_most_db / 10));
+        sum += fmin(power[i], pow(10, most_db / 10));
     }
-    leak->lines = leak->lines < 32 ? leak->lines + 1 : 32;
-    leak->mean += (sum / cells - leak->mean) / leak->lines;
+    leak->lines = leak->lines < lines_max ? leak->lines + 1 : lines_max;
+    leak->mean += ((cells > 0 ? sum / cells : 0) - leak->mean) / leak->lines;
+}
+
+double ref_leak(struct ref_leak *leak, const struct ref_params *params, unsigned line,
+                const struct ref_bin *shown, size_t count)
+{
+    double power[REF_LINE_MAX];
+    for (size_t i = 0; i < count; i++) {
+        power[i] = shown[i].ground + shown[i].veil;
+    }
+    ref_leak_line(leak, params->leak_most_db, 32, line, power, count);
     return leak->mean * pow(10, params->leak_db / 10);
 }
 

@@ -72,10 +72,35 @@ void ref_pulse(double *power, size_t count, double bins)
     }
 }
 
+/* Bins of the altitude hole, before the nearest ground. */
+static size_t hole_of(const struct ref_receiver *r)
+{
+    size_t i = 0;
+    while (i < r->bins.count &&
+           ref_ground_of_slant(r->bins.first_m + (double)i * r->bins.step_m, r->height_m) <= 0) {
+        i++;
+    }
+    return i;
+}
+
+/* Add what the ground leaves in the bins that have any. */
+static void add_leak(const struct ref_receiver *r, uint32_t line, double *power)
+{
+    const size_t hole = hole_of(r);
+    ref_leak_line(r->leak, r->leak_most_db, r->leak_lines, line, power + hole,
+                  r->bins.count - hole);
+    for (size_t i = hole; i < r->bins.count; i++) {
+        power[i] += r->leak->mean * pow(10, r->leak_db / 10);
+    }
+}
+
 void ref_receive(const struct ref_receiver *r, const struct ref_weather_line *weather,
                  uint32_t line, uint32_t sweep, double *power, double *level_db)
 {
     ref_pulse(power, r->bins.count, ref_pulse_m(r->pulse_s) / r->bins.step_m);
+    if (r->leak != NULL) {
+        add_leak(r, line, power);
+    }
     for (size_t i = 0; i < r->bins.count; i++) {
         const double slant_m = r->bins.first_m + (double)i * r->bins.step_m;
         const double air = pow(10, -r->air_loss_db_km * slant_m / 1000 / 10);

@@ -12,6 +12,11 @@ double ref_dbs_looks(double had, double used)
     return fmax(1, had / used);
 }
 
+unsigned ref_leak_lines(double beam_deg, double line_deg)
+{
+    return (unsigned)fmax(1, floor(beam_deg / line_deg));
+}
+
 double ref_grain_rows(const struct ref_beam *beam, double width_deg)
 {
     return width_deg * beam->ratio * sqrt(2) / beam->beam_deg;
@@ -160,6 +165,12 @@ static void draw(struct ref_picture *picture, struct samples *samples, const str
                                    .sweep = ground->epoch};
     line.receiver.bins = (struct ref_bins){ground->cell_m / 2, ground->cell_m, ground->cell_count};
     line.receiver.height_m = picture->view.antenna_m - picture->view.reference_m;
+    struct ref_leak leak = {0};
+    line.receiver.leak = &leak;
+    line.receiver.leak_db = params->leak_db;
+    line.receiver.leak_most_db = params->leak_most_db;
+    line.receiver.leak_lines =
+        ref_leak_lines(sector->beam_deg, 2 * ground->half_angle_deg / ground->line_count);
     ref_tables_set(&tables, params);
     for (line.line = 0; line.line < ground->line_count; line.line++) {
         const double azimuth_deg = ref_gm_azimuth_deg(ground, line.line);

@@ -204,6 +204,46 @@ def shadow_depth(scenes, real):
                "constant picture 0.0", all(within(v, 14, 18) for v in ours))
 
 
+def sharpened_shadow_db(scenes, fov):
+    """Level of a shadow under that of the field beside it in a window that is sharpened: behind the forest of the yard, 12 km
+    away and seen from 1,000 m, whose shadow is 146 m long and 300 m wide. The velocity points 45 degrees to the left."""
+    forest = utm_degrees(place_of.FOREST)
+    antenna = tuple(float(v) for v in direct(forest, 180, 12000))
+    picture = scenes.sector("yard", antenna, clat=forest[0], clon=forest[1], fov=fov, track=-45, height_m=1000, sweeps=8,
+                            speed_m_s=SPEED_M_S)
+    levels = power(picture.sweeps_db()).mean(axis=0)
+    azimuth = np.radians((picture.azimuth_deg() + 180) % 360 - 180)[:, None]
+    ground = np.sqrt(np.maximum(picture.range_m() ** 2 - 990.0**2, 0))[None, :]
+    aside, behind = ground * np.sin(azimuth), ground * np.cos(azimuth) - 12000 - place_of.FOREST_HALF_M
+    deep = (behind > 30) & (behind < 110)
+    shadow, field = deep & (abs(aside) < 75), deep & (abs(aside) > 300) & (abs(aside) < 450)
+    return db(levels[field].mean() / levels[shadow].mean())
+
+
+def real_beam_shadow_db(scenes):
+    """Level of the surely hidden cells of Hawaii in a ground map, under even land of the same class at the same range. Where
+    the noise is 30 dB under the land, or it would be the noise that is measured."""
+    place, height_m = ANTENNAS[1]
+    level, noise, land, _, high = ground_map_of_hawaii(scenes, place, height_m, 40)
+    hidden = (high < land - 30) & (noise < land - 30)[None, :]
+    return -db(power(level - land)[hidden].mean())
+
+
+@measure("3.2, item 8", "shadow under even ground: DBS1 / DBS2 / GM, dB")
+def sector_shadow(scenes, real):
+    """DBS behind a forest of the yard; GM behind the mountains of Hawaii, in cells from which nothing comes.
+
+    Real: MSTAR, as for patches; no data here show a shadow of a real beam. Yardstick of DBS: the patch's, 14..18 dB. Of GM:
+    25 and more, because the side lobes of a uniform aperture hold -25.3 dB of its power, both ways together, and no usual
+    antenna is worse; noise comes on top, so that no upper end is known.
+    """
+    ours = [sharpened_shadow_db(scenes, fov) for fov in (2, 3)]
+    gm = real_beam_shadow_db(scenes) if scenes.has(place_of.DTED[0]) else None
+    return Row("14..18 / 14..18 / >= 25", "MSTAR 15.6; uniform aperture 25.3",
+               "{:.1f} / {:.1f} / ".format(*ours) + (f"{gm:.1f}" if gm else "no DTED"), "constant picture 0.0",
+               all(within(v, 14, 18) for v in ours) and (gm is None or gm >= 25))
+
+
 @measure("3.2, 6.4", "shadow: standard deviation of its grey")
 def shadow_grain(scenes, real):
     """Of the pixels inside shadows, as the tone curve shows them. Real: speckle goes on in a shadow, as noise does.
@@ -826,17 +866,20 @@ def expected_db(terrain, bin_m):
     return db(ndimage.uniform_filter1d(smeared, max(1, round(bin_m / terrain.step_m)), axis=1) + 1e-9) + LAND_DB
 
 
-def hidden_and_lit(scenes, place, height_m, nm, is_mirrored=False):
-    """Of the cells that must lie 3 dB under the noise, the share that is drawn 6 dB over it; of those that must lie 10 dB
-    over it, the share that is drawn no more than 1.5 dB over it; per cent.
+# What the antenna's side lobes leave of the ground in NORM: firmware/table/radar.c, `ground_leak_db_q8`.
+REAL_BEAM_LEAK_DB = -30.0
 
-    Mirrored: against the terrain of the other side, which is the null model.
-    """
+
+def ground_map_of_hawaii(scenes, place, height_m, nm, is_mirrored=False):
+    """A ground map's levels; by bin, those of the noise and of even land; the least and most that the full terrain's rays say
+    about each cell, on the scale of even land of LAND_DB as the picture shows it."""
     keys = dict(heading=250, track=205, nm=nm, sweeps=8, speed_m_s=SPEED_M_S, height_m=height_m)
     picture = scenes.sector("hawaii", place, **keys)
     level = db(power(picture.sweeps_db()).mean(axis=0))
     noise = db(power(scenes.sector("plain", OFF_MAP, **keys).sweeps_db()).mean(axis=(0, 1)))
     field = db(power(scenes.sector("plain", PLAIN, **keys).sweeps_db()[:, 64:192]).mean(axis=(0, 1)))
+    # The scale of the picture, sensitivity time control included, is that of the even field.
+    scale = field - place_of.FIELD_DB
     terrain = FullTerrain(scenes.data, place, height_m, 250, nm * 1852 + 4000)
     expected = expected_db(terrain, picture.number("cell_m"))[::-1 if is_mirrored else 1]
     # Places may be off by a bin or two in range.
@@ -844,12 +887,22 @@ def hidden_and_lit(scenes, place, height_m, nm, is_mirrored=False):
     ground = np.sqrt(np.maximum(picture.range_m() ** 2 - height_m**2, 0))
     row = np.clip(np.round((picture.azimuth_deg() % 360 - terrain.azimuth[0]) / terrain.turn_deg).astype(int), 0, len(low) - 1)
     column = np.clip(np.round(ground / terrain.step_m).astype(int) - 1, 0, low.shape[1] - 1)
-    low, high = low[np.ix_(row, column)], high[np.ix_(row, column)]
-    # The scale of the picture, sensitivity time control included, is that of the even field.
-    floor = (noise - field + place_of.FIELD_DB)[None, :]
-    over = level - noise[None, :]
-    usable = (ground > 5000) & (floor[0] < LAND_DB - 6)
-    hidden, lit = (high < floor - 3) & usable, (low > floor + 10) & usable
+    low, high = low[np.ix_(row, column)] + scale, high[np.ix_(row, column)] + scale
+    far = ground > 5000
+    return level[:, far], noise[far], (scale + LAND_DB)[far], low[:, far], high[:, far]
+
+
+def hidden_and_lit(scenes, place, height_m, nm, is_mirrored=False):
+    """Of the cells that must lie 3 dB under a shadow's level, the share that is drawn 6 dB over it; of those that must lie
+    10 dB over it, the share that is drawn no more than 1.5 dB over it; per cent. A shadow has noise and what the antenna's
+    side lobes leave.
+
+    Mirrored: against the terrain of the other side, which is the null model.
+    """
+    level, noise, land, low, high = ground_map_of_hawaii(scenes, place, height_m, nm, is_mirrored)
+    dark = db(power(noise) + power(land + REAL_BEAM_LEAK_DB))
+    over, usable = level - dark, (dark < land - 6)[None, :]
+    hidden, lit = (high < dark - 3) & usable, (low > dark + 10) & usable
     return 100 * (over[hidden] > 6).mean(), 100 * (over[lit] < 1.5).mean(), int(hidden.sum()), int(lit.sum())
 
 

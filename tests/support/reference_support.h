@@ -61,6 +61,8 @@ static inline struct ref_receiver ref_receiver_of(const struct lm_radar *radar, 
                                  .code_gain_db = decibels(row->code_gain_db_q8[fov]),
                                  .air_loss_db_km = t->air_loss_db_per_km_q16 / 65536.0,
                                  .noise_table_db = noise_table_db,
+                                 .leak_db = decibels(radar->fov[fov].ground_leak_db_q8),
+                                 .leak_most_db = decibels(radar->sar.ground_leak_most_db_q8),
                                  .stc_m = row->stc_end_m,
                                  .pulse_s = row->pulse_ns[fov] * 1e-9};
 }

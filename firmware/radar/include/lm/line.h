@@ -19,6 +19,7 @@
  *     ground range to slant range  lm_slant_run                 -
  *     azimuth                      lm_beam_sum                  lm_defocus_run
  *     pulse                        lm_receiver_pulse            -
+ *     floor                        lm_sector_floor_run          -
  *     speckle, scatterers          lm_receiver_fade, _join      -
  *     noise, rain, jammers         lm_receiver_run              -
  *     level to grey                lm_tone_run                  lm_tone_run

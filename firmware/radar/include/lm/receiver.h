@@ -16,6 +16,7 @@ enum { LM_PULSE_REACH_MAX = 4 }; /* most bins on either side that a pulse covers
 struct lm_receiver {
     uint32_t first_m_q8, cell_m_q8; /* slant range of bin 0's centre, and between centres */
     uint32_t cells;                 /* number of bins */
+    uint32_t hole;                  /* of them before the nearest ground */
     uint32_t looks_log2;            /* looks of the noise */
     /* Pulse: weight of each bin m to either side in a bin's power. weight_q16[0] plus twice the
      * others is 65536. weight_q16[0] is all of it if the pulse is not longer than a bin. */
@@ -40,8 +41,9 @@ void lm_receiver_set(struct lm_receiver *r, const struct lm_radar *radar,
  * pulse is longer than a bin. */
 void lm_receiver_pulse(const struct lm_receiver *r, uint32_t *power_q24);
 
-/* Multiply the power of each bin by that of its speckle, 1 in Q24. Cost: 2 instructions a bin. */
-void lm_receiver_fade(const struct lm_receiver *r, const uint32_t *speckle_q24,
+/* Add what the ground leaves in every bin behind the altitude hole (lm/sector_floor.h), and
+ * multiply by the power of the bin's speckle, 1 in Q24. Cost: 3 instructions a bin. */
+void lm_receiver_fade(const struct lm_receiver *r, uint32_t floor_q24, const uint32_t *speckle_q24,
                       uint32_t *power_q24);
 
 /* Add the power of scatterers, which have no speckle of the ground. Cost: 1 instruction a bin. */

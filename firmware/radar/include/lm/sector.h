@@ -35,6 +35,7 @@
 #include "lm/line.h"
 #include "lm/radar.h"
 #include "lm/receiver.h"
+#include "lm/sector_floor.h"
 #include "lm/slant.h"
 #include "lm/tone.h"
 #include "lm/weather.h"
@@ -113,6 +114,7 @@ struct lm_sector {
         struct lm_beam_taps taps;
     } taps[2];
     struct lm_grain_stretch grain; /* of the next line */
+    struct lm_sector_floor floor;  /* of the lines so far, from sweep to sweep */
     struct lm_receiver receiver;
     struct lm_weather weather;
     struct lm_target_candidates candidates;

@@ -27,6 +27,7 @@
 struct lm_slant {
     uint32_t first_m_q8, cell_m_q8; /* slant range of bin 0's centre, and between centres */
     uint32_t cells;                 /* number of bins */
+    uint32_t hole;                  /* of them in the altitude hole, before the nearest ground */
     /* Ground cell at the bin's centre. It is the grid's number of cells where there is no ground.
      */
     int32_t cell_of[LM_CELLS_ROOM];

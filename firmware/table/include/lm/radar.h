@@ -144,6 +144,8 @@ struct lm_fov_row {
                                 * themselves; 0 (not seen) ..20 degrees */
     uint8_t azimuths_log2;     /* traced across a sample of real beam (lm/azimuth_average.h); 0..
                                 * LM_RADAR_AZIMUTHS_LOG2_MAX */
+    int16_t ground_leak_db_q8; /* what side lobes, ambiguities and quantisation leave of the
+                                * ground's mean in every bin; -100..0 dB, below -48 none */
 };
 
 /* A display scale, and what the receiver does on it. Its name, on the glass, in commands and in
@@ -193,8 +195,9 @@ struct lm_sar_table {
     fx_bam_t line_lobe; /* half-power width in which a fence or wire glints; 2^20..90 degrees */
     int16_t ground_leak_db_q8;      /* what side lobes, ambiguities and quantisation leave of the
                                      * ground's mean in every cell; -100..0 dB */
-    int16_t ground_leak_most_db_q8; /* a stronger cell counts as this one, because its side lobes
-                                     * are drawn; dB of gamma, -60..20 dB */
+    int16_t ground_leak_most_db_q8; /* a stronger cell counts as this one, here and in sectors,
+                                     * because the side lobes of points are drawn or left out; dB
+                                     * of gamma, -60..20 dB */
     struct lm_side_lobe_config side_lobes;
     struct lm_speckle_config speckle;
     struct lm_tone_config tone;

@@ -15,7 +15,7 @@
 
 enum {
     LM_RADAR_RECORD_VERSION = 1,
-    LM_RADAR_RECORD_BYTES = 620 /* of this version */
+    LM_RADAR_RECORD_BYTES = 628 /* of this version */
 };
 
 /* Write the table as a record. `record` has room for LM_RADAR_RECORD_BYTES. */

@@ -256,11 +256,18 @@ int ref_grain(uint32_t row, uint32_t column);
 double ref_grain_power(double looks, uint32_t start_row, uint32_t start_column, double row,
                        double column);
 
-/* The running mean of a patch's ground: zero before its first line. */
+/* The running mean of the ground: zero before its first line. */
 struct ref_leak {
     double mean, shadow_db; /* of the line last taken: level of its shadows without rain */
     unsigned lines;
 };
+
+/* Take the powers of a line's cells into the mean of `lines_max` lines; none counts above most_db.
+ */
+void ref_leak_line(struct ref_leak *leak, double most_db, unsigned lines_max, unsigned line,
+                   const double *power, size_t count);
+
+/* Take the line of a patch. Returns the power that the ground leaves in the dark. */
 
 /* Power that the ground leaves in each cell of a line, from the `ground` and `veil` of its bins.
  * The line is taken into the mean first. */
@@ -333,6 +340,9 @@ struct ref_receiver {
     double air_loss_db_km;        /* there and back */
     const double *noise_table_db; /* borrowed: ref_speckle_table of the noise's looks */
     const double *speckle;        /* borrowed: power of the ground's in each bin; NULL: none */
+    struct ref_leak *leak;        /* borrowed: the ground's mean so far; NULL: nothing leaks */
+    double leak_db, leak_most_db; /* what is left of it, and what a bin counts for at most */
+    unsigned leak_lines;          /* that the beam is wide */
     double stc_m;                 /* r_s */
     double pulse_s;
 };
@@ -491,6 +501,9 @@ struct ref_sector_line {
 
 /* Looks that a dwell with a ratio `had` leaves where `used` is used. */
 double ref_dbs_looks(double had, double used);
+
+/* Lines that the beam is wide, of whose ground the mean is taken; 1 or more. */
+unsigned ref_leak_lines(double beam_deg, double line_deg);
 
 /* Rows of the grain from one line to the next, `width_deg` apart: a row is a two-way beam wide. */
 double ref_grain_rows(const struct ref_beam *beam, double width_deg);

@@ -29,7 +29,8 @@ struct trial {
     struct sector_world *w;
     struct ref_params params;
     double noise_db[REF_SPECKLE_SLICES];
-    double grain_row; /* of the line, from where the sweep's grain begins */
+    double grain_row;     /* of the line, from where the sweep's grain begins */
+    struct ref_leak leak; /* of the lines so far */
     struct ref_environment environment;
     const struct lm_environment *weather; /* NULL: fair */
     struct score score[STAGES];
@@ -253,6 +254,9 @@ static void judge_receiver(struct trial *t, uint32_t line, uint32_t sweep,
     const struct lm_sector *s = &t->w->sector;
     struct ref_receiver receiver = receiver_of(t);
     struct ref_weather_line weather;
+    receiver.leak = &t->leak;
+    receiver.leak_lines =
+        ref_leak_lines(hs_degrees(s->radar->antenna.azimuth_beam), hs_degrees(s->width));
     double power[REF_CELLS_MAX], level_db[REF_CELLS_MAX], speckle[REF_CELLS_MAX], looks;
     const struct ref_beam beam = beam_of(s, line_azimuth_deg(s, line), &looks);
     ref_line_speckle(looks, sweep, t->grain_row,
@@ -310,8 +314,9 @@ static void report(const char *what, const struct trial *t)
 }
 
 /* At most one value in ten thousand beyond half a decibel. Behind the speckle it is one in four
- * thousand, and three pixels in a thousand more than one grey level off: with one or two looks, a
- * step of the grain, 1/32 of a deviation, is up to half a decibel in a deep fade. */
+ * thousand, and 32 pixels in ten thousand more than one grey level off: with one or two looks, a
+ * step of the grain, 1/32 of a deviation, is up to half a decibel in a deep fade. Shadows have that
+ * grain, too, where the ground leaks into them. */
 static void judge(const struct trial *t)
 {
     for (int stage = 0; stage < STAGES; stage++) {
@@ -319,7 +324,7 @@ static void judge(const struct trial *t)
         const double most = stage == RECEIVER ? 4000 : 10000;
         assert_true(t->score[stage].beyond_half_db * most <= t->score[stage].values);
     }
-    assert_true(t->beyond_1_grey * 1000.0 <= 3 * t->pixels);
+    assert_true(t->beyond_1_grey * 10000.0 <= 32 * t->pixels);
 }
 
 static void judge_sweep(struct sector_world *w, const char *what,

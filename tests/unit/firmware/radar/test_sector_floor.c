@@ -1,0 +1,161 @@
+/* The floor of a sector: the running mean of its ground, and a shadow as it shows beside grass in
+ * each field of view. docs/EQUATIONS.md, "Floor" of the real beam. */
+#include "check.h"
+#include "hs/rng.h"
+#include "lm/sector_floor.h"
+#include "reference_support.h"
+#include "scales.h"
+#include "sector_world.h"
+
+#include <math.h>
+
+enum { BINS = 256, LINE = 1 << 20 };
+
+static const int32_t most_q8 = -10 * 256;
+
+static double run(struct lm_sector_floor *f, uint32_t number, const uint32_t *power_q24,
+                  uint32_t bins)
+{
+    return 10 * log10(ldexp(lm_sector_floor_run(f, number, power_q24, bins), -24));
+}
+
+static struct lm_sector_floor floor_of(double leak_db, uint32_t lines)
+{
+    struct lm_sector_floor f;
+    lm_sector_floor_clear(&f);
+    lm_sector_floor_set(&f, (int32_t)(leak_db * 256), most_q8, lines * LINE, LINE);
+    return f;
+}
+
+TEST(even_ground_leaves_its_level_less_the_leak)
+{
+    for (int db = -30; db <= 20; db += 5) {
+        struct lm_sector_floor f = floor_of(-16, 200);
+        uint32_t power_q24[LM_CELLS_ROOM];
+        for (int i = 0; i < LM_CELLS_ROOM; i++) {
+            power_q24[i] = (uint32_t)ldexp(pow(10, db / 10.0), 24);
+        }
+        for (uint32_t line = 0; line < 50; line++) {
+            const double wanted_db = fmin(db, -10) - 16;
+            assert_true(fabs(run(&f, line, power_q24, BINS) - wanted_db) < 0.02);
+        }
+    }
+}
+
+TEST(leaks_of_the_ends_of_the_table_neither_overflow_nor_add_power)
+{
+    uint32_t power_q24[LM_CELLS_ROOM];
+    for (int i = 0; i < LM_CELLS_ROOM; i++) {
+        power_q24[i] = UINT32_MAX;
+    }
+    struct lm_sector_floor f;
+    lm_sector_floor_clear(&f);
+    lm_sector_floor_set(&f, 0, 20 * 256, LINE, LINE);
+    for (uint32_t line = 0; line < 10; line++) {
+        assert_true(fabs(run(&f, line, power_q24, LM_CELLS_MAX) - 20) < 0.01);
+    }
+    lm_sector_floor_set(&f, -100 * 256, 20 * 256, LINE, LINE);
+    assert_int_equal(lm_sector_floor_run(&f, 0, power_q24, LM_CELLS_MAX), 0);
+    lm_sector_floor_set(&f, 0, 20 * 256, 0, UINT32_MAX);
+    assert_int_equal(f.lines_max, 1);
+}
+
+TEST(the_mean_of_any_lines_is_that_of_the_reference)
+{
+    struct hs_rng rng;
+    hs_rng_seed(&rng, 12);
+    for (uint32_t bins = 0; bins <= LM_CELLS_MAX; bins += 37) {
+        const uint32_t lines = 1 + hs_rng_below(&rng, 250);
+        struct lm_sector_floor f = floor_of(-20, lines);
+        struct ref_leak leak = {0};
+        for (uint32_t line = 3; line < 300; line++) {
+            uint32_t power_q24[LM_CELLS_ROOM];
+            double power[LM_CELLS_ROOM];
+            const double about_db = -(double)hs_rng_below(&rng, 30);
+            for (uint32_t i = 0; i < LM_CELLS_ROOM; i++) {
+                power_q24[i] =
+                    (uint32_t)ldexp(pow(10, (about_db + hs_rng_below(&rng, 20)) / 10), 24);
+                power[i] = ldexp(power_q24[i], -24);
+            }
+            ref_leak_line(&leak, -10, lines, line, power, bins);
+            const double wanted_db = fmax(10 * log10(leak.mean) - 20, -70);
+            assert_true(fabs(fmax(run(&f, line, power_q24, bins), -70) - wanted_db) < 0.05);
+        }
+    }
+}
+
+/* Grass of -15 dB, and a wall 60 m high that runs across the look for 16 km. */
+static struct tiny_cell grass_and_wall(void *ctx, const struct tiny_place *p)
+{
+    (void)ctx;
+    return fabs(p->north_m) < 100 ? (struct tiny_cell){-15, TINY_STRUCTURE, 13}
+                                  : (struct tiny_cell){-15, TINY_SOIL, 0};
+}
+
+/* Mean power, in dB, of the bins between two ground ranges, on the lines within a degree of the
+ * middle, of a second sweep. */
+struct depth {
+    double shadow_db, grass_db;
+};
+
+static struct depth depth_of(struct sector_world *w, const struct lm_sector_command *command)
+{
+    double shadow = 0, grass = 0, in_shadow = 0, on_grass = 0;
+    start_sector(w, command, NULL, NULL);
+    draw_sweep(w);
+    do {
+        const struct lm_sector *s = &w->sector;
+        const uint32_t line = draw_line(w);
+        const bool is_in = fabs(line_azimuth_deg(s, line)) < 1;
+        for (uint32_t i = 0; is_in && i < s->slant.cells; i++) {
+            const double slant_m = (s->slant.first_m_q8 + i * s->slant.cell_m_q8) / 256.0;
+            const double ground_m = sqrt(slant_m * slant_m - 1000.0 * 1000);
+            const double power = pow(10, decibels(s->level_db_q8[i]) / 10);
+            const bool is_shadow = ground_m > 10250 && ground_m < 10450;
+            const bool is_grass = ground_m > 9500 && ground_m < 9800;
+            shadow += is_shadow ? power : 0;
+            grass += is_grass ? power : 0;
+            in_shadow += is_shadow;
+            on_grass += is_grass;
+        }
+    } while (!lm_sector_is_at_edge(&w->sector));
+    assert_true(in_shadow > 2 && on_grass > 2);
+    return (struct depth){10 * log10(shadow / in_shadow), 10 * log10(grass / on_grass)};
+}
+
+/* The wall is 10 km away, seen from 1,000 m: its shadow is 600 m long, and as wide as the beam of
+ * any field of view. It is filled with the grass less the leak and with the noise. The noise of DBS
+ * at 10 nautical miles is 31 dB under grass. */
+TEST(a_shadow_is_under_the_grass_by_the_leak_of_its_field_of_view)
+{
+    struct tiny_spec spec = tiny_spec_at(46, 11);
+    spec.cell = grass_and_wall;
+    spec.shift0 = 11;
+    spec.rows = spec.columns = 24;
+    struct sector_world *w = make_sector_world(&spec);
+    w->radar.antenna.fan = FX_BAM_DEG(60);
+    w->platform =
+        (struct lm_platform){.position = {w->map.db.centre_latitude, w->map.db.centre_longitude},
+                             .height_m_q10 = 1000 * 1024,
+                             .track = FX_BAM_DEG(50),
+                             .speed_mm_s = 250000};
+    w->platform.position = place_at(w, 180, 10000);
+    const struct {
+        enum lm_fov fov;
+        double least_db, most_db;
+    } want[] = {
+        {LM_FOV_NORM, 26, 32}, {LM_FOV_EXP, 18, 22}, {LM_FOV_DBS1, 14, 18}, {LM_FOV_DBS2, 14, 18}};
+    for (size_t n = 0; n < sizeof want / sizeof want[0]; n++) {
+        const struct lm_sector_command command = {.mode = LM_SECTOR_GM,
+                                                  .fov = (uint8_t)want[n].fov,
+                                                  .range_index = scale_of(10),
+                                                  .centre = place_at(w, 0, 10000)};
+        const struct depth d = depth_of(w, &command);
+        print_message("# %s: shadow %.1f dB, grass %.1f, %.1f under it\n",
+                      w->radar.fov[want[n].fov].name, d.shadow_db, d.grass_db,
+                      d.grass_db - d.shadow_db);
+        assert_true(d.grass_db - d.shadow_db > want[n].least_db);
+        assert_true(d.grass_db - d.shadow_db < want[n].most_db);
+    }
+    free_sector_world(w);
+}
