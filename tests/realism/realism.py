@@ -23,8 +23,6 @@ import scenes
 # be taken off. Beside one that went back stands why.
 OPEN = {
     "border_steps",
-    "class_spread",  # structures 6.5 dB, with classes found by three networks; 6.3 with those of one
-    "structure_tail",  # likewise: p99 4.3 dB from the real one
 }
 
 

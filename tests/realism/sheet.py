@@ -77,7 +77,7 @@ def orihuela_pairs(scenes, real):
     grey = lambda box: [grey_of(picture[box], about=level) for picture, level in zip((o.real_db, o.ours_db), about)]
     whole, town = grey((slice(0, 512), slice(0, 512))), grey((slice(100, 356), slice(100, 356)))
     yield ("Sentinel-1, VV, C band, 4.4 looks, Orihuela. 10 m pixels of a 20 m cell, 2019-09-17. Copernicus.", whole[0],
-           "Ours: the same place from Sentinel-2's bands of the day after, 10 m cells, looking 80 degrees, 45 degrees down.",
+           "Ours: the same place from Sentinel-2's bands of the day after, 20 m cells, looking 80 degrees, 45 degrees down.",
            whole[1])
     yield ("Sentinel-1: the middle of the same picture, twice as large: rows of houses, a town, fields.", town[0],
            "Ours: the same crop.", town[1])
