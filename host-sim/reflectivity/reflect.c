@@ -225,6 +225,32 @@ double db_reflect_assign(const struct db_reflect_law *law, uint64_t seed, struct
     return value_at(law, seed, p, true);
 }
 
+static bool mixes(const struct db_class *c)
+{
+    return c->is_natural && (c->kind == DB_KIND_GROUND || c->kind == DB_KIND_TREES);
+}
+
+double db_reflect_assign_among(const struct db_reflect_law *laws, const uint8_t around[9],
+                               uint64_t seed, struct reflect_place p)
+{
+    static const double weight[9] = {1, 2, 1, 2, 4, 2, 1, 2, 1};
+    const uint8_t own = around[4];
+    double share[DB_CLASS_MAX] = {0}, power = 0;
+    for (int i = 0; i < 9; i++) {
+        const bool is_mixed =
+            around[i] != DB_CLASS_NODATA && mixes(laws[around[i]].c) && mixes(laws[own].c);
+        share[is_mixed ? around[i] : own] += weight[i] / 16;
+    }
+    if (share[own] >= 1) {
+        return db_reflect_assign(&laws[own], seed, p);
+    }
+    for (int k = 0; k < DB_CLASS_MAX; k++) {
+        power +=
+            share[k] > 0 ? share[k] * exp(db_reflect_assign(&laws[k], seed, p) / db_per_neper) : 0;
+    }
+    return db_per_neper * log(power);
+}
+
 double db_reflect_assign_cell(const struct db_reflect_law *law, uint64_t seed, double latitude,
                               double longitude, double width_m)
 {

@@ -33,6 +33,9 @@ static const struct hs_usage usage = {
         "seed and the\n"
         "          pixel's place on the ground alone: other rasters and levels have the same "
         "there.\n"
+        "          Where grown classes of ground and trees meet, a pixel has the mean power of "
+        "those "
+        "around it.\n"
         "  adjust  the image's brightness is kept as detail: the mean and spread of each class's "
         "brightness\n"
         "          are moved to its gamma_db and spread_db. Water becomes uniform. More detailed, "
@@ -132,7 +135,8 @@ struct outcome {
 struct block {
     float *pixels; /* planes of the image, or one plane of scratch */
     uint8_t *valid, *class_valid, *classes;
-    float *values; /* brightness, or dB of the radar; then dB of the result */
+    uint8_t *around; /* owned: the rows of `classes`, with one before and one behind */
+    float *values;   /* brightness, or dB of the radar; then dB of the result */
     float *patches;
     int y, rows;
 };
@@ -232,10 +236,11 @@ static int alloc_block(struct work *w)
     b->patches = malloc(count * sizeof *b->patches);
     b->valid = malloc(count);
     b->class_valid = malloc(count);
-    b->classes = malloc(count);
-    if (!b->pixels || !b->values || !b->patches || !b->valid || !b->class_valid || !b->classes) {
+    b->around = malloc(count + 2 * (size_t)w->classes.grid.width);
+    if (!b->pixels || !b->values || !b->patches || !b->valid || !b->class_valid || !b->around) {
         return hs_error(w->options->out, NULL, "out of memory");
     }
+    b->classes = b->around + w->classes.grid.width;
     return 0;
 }
 
@@ -288,12 +293,32 @@ static int read_patches(struct work *w)
     return 0;
 }
 
+/* Classes of a row beside the block; none beyond the raster. */
+static int read_beside(struct work *w, int y, uint8_t *classes)
+{
+    struct block *b = &w->block;
+    if (y < 0 || y >= w->classes.grid.height) {
+        memset(classes, DB_CLASS_NODATA, (size_t)w->classes.grid.width);
+        return 0;
+    }
+    return db_class_raster_read(&w->classes, &w->numbers, y, 1, b->values, b->class_valid, classes);
+}
+
+/* The row before the block and the one behind it. */
+static int read_around(struct work *w)
+{
+    struct block *b = &w->block;
+    uint8_t *const behind = b->classes + (size_t)b->rows * (size_t)w->classes.grid.width;
+    return read_beside(w, b->y - 1, b->around) == 0 ? read_beside(w, b->y + b->rows, behind) : -1;
+}
+
 /* Classes of the block, and in `values` brightness or radar (NAN where there is none). */
 static int read_block(struct work *w)
 {
     struct block *b = &w->block;
     const size_t count = (size_t)b->rows * (size_t)w->classes.grid.width;
-    if (db_class_raster_read(&w->classes, &w->numbers, b->y, b->rows, b->values, b->class_valid,
+    if ((w->method == ASSIGN && read_around(w) != 0) ||
+        db_class_raster_read(&w->classes, &w->numbers, b->y, b->rows, b->values, b->class_valid,
                              b->classes) != 0) {
         return -1;
     }
@@ -373,13 +398,28 @@ static void find_scene_offset(struct work *w)
     w->scene_offset_db = count > 0 ? sum / count : 0;
 }
 
+/* The pixel's class and those around it decide. */
+static double assigned(const struct work *w, size_t i)
+{
+    const size_t width = (size_t)w->classes.grid.width, x = i % width;
+    uint8_t around[9];
+    for (size_t n = 0; n < 9; n++) {
+        const bool is_beyond = (n % 3 == 0 && x == 0) || (n % 3 == 2 && x + 1 == width);
+        around[n] = is_beyond ? DB_CLASS_NODATA : w->block.around[i + n / 3 * width + n % 3 - 1];
+    }
+    return db_reflect_assign_among(w->laws, around, (uint64_t)w->options->seed, w->places.row[x]);
+}
+
 static double value_of(struct work *w, size_t i)
 {
     const struct block *b = &w->block;
     const int c = b->classes[i];
     const bool is_missing = w->method != ASSIGN && isnan(b->values[i]);
     w->filled += is_missing;
-    if (w->method == ASSIGN || (w->method == RADAR && is_missing)) {
+    if (w->method == ASSIGN) {
+        return assigned(w, i);
+    }
+    if (w->method == RADAR && is_missing) {
         return db_reflect_assign(&w->laws[c], (uint64_t)w->options->seed,
                                  w->places.row[i % (size_t)w->classes.grid.width]);
     }
@@ -631,7 +671,7 @@ int db_cmd_reflect(int argc, char **argv)
     db_raster_close(&w->patches);
     free(w->block.valid);
     free(w->block.class_valid);
-    free(w->block.classes);
+    free(w->block.around);
     db_preview_free(&w->preview);
     pixel_places_close(&w->places);
     db_raster_close(&w->classes);

@@ -58,6 +58,16 @@ double db_reflect_rank(const struct db_reflect_law *law, uint64_t seed, struct r
 /* The value at a place: the same for the same seed and place. */
 double db_reflect_assign(const struct db_reflect_law *law, uint64_t seed, struct reflect_place p);
 
+/* The value of a pixel that stands among others in a class map: `around` has the indices of 3 x 3
+ * pixels in `laws`, row by row, DB_CLASS_NODATA where there is none; the pixel itself is around[4].
+ *
+ * A map's pixel has one class, and its ground more: where grown classes of ground or trees meet,
+ * the value is the mean power of theirs at the place, weighted 1 2 1 both ways. What people laid
+ * out, water and structures keep their edge: such a pixel around counts as the pixel's own class.
+ */
+double db_reflect_assign_among(const struct db_reflect_law *laws, const uint8_t around[9],
+                               uint64_t seed, struct reflect_place p);
+
 /* The value of a cell of `width_m` a side around a place, as the mean power of its ground has it:
  * up to 5 m the value at its middle; beyond, the mean power at up to 4 x 4 places of it. */
 double db_reflect_assign_cell(const struct db_reflect_law *law, uint64_t seed, double latitude,

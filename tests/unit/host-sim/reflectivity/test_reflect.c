@@ -240,6 +240,47 @@ TEST(a_border_stands_out_about_alike_at_every_level)
     assert_true(most < 2 * least && most < 6.5);
 }
 
+/* Where grown classes meet, a pixel is mixed: the shares below are sums of 1 2 1 by 1 2 1. */
+TEST(a_pixel_among_grown_classes_has_the_mean_power_of_all_of_them)
+{
+    struct db_class all[] = {soil, woods, structures, soil, soil};
+    enum { SOIL, WOODS, TOWN, LAKE, ROAD };
+    all[SOIL].is_natural = all[WOODS].is_natural = all[LAKE].is_natural = true;
+    all[LAKE].kind = DB_KIND_WATER;
+    struct db_reflect_law laws[DB_CLASS_MAX] = {{0}};
+    for (int k = 0; k < 5; k++) {
+        db_reflect_law_init(&laws[k], &all[k], 5);
+    }
+    const struct {
+        uint8_t around[9];
+        double soil, woods; /* shares */
+    } cases[] = {
+        {{SOIL, SOIL, SOIL, SOIL, SOIL, SOIL, SOIL, SOIL, SOIL}, 1, 0},
+        {{WOODS, SOIL, SOIL, WOODS, SOIL, SOIL, WOODS, SOIL, SOIL}, 0.75, 0.25},
+        {{SOIL, SOIL, SOIL, WOODS, WOODS, WOODS, WOODS, WOODS, WOODS}, 0.25, 0.75},
+        {{WOODS, SOIL, SOIL, SOIL, SOIL, SOIL, SOIL, SOIL, SOIL}, 0.9375, 0.0625},
+        {{TOWN, TOWN, TOWN, LAKE, SOIL, ROAD, 255, 255, WOODS}, 0.9375, 0.0625},
+        {{WOODS, WOODS, WOODS, WOODS, SOIL, WOODS, WOODS, WOODS, WOODS}, 0.25, 0.75},
+    };
+    for (size_t n = 0; n < sizeof cases / sizeof cases[0]; n++) {
+        for (int i = 0; i < 100; i++) {
+            const struct reflect_place p = near_by(i * 37, 5);
+            const double soil_db = db_reflect_assign(&laws[SOIL], 1, p);
+            const double woods_db = db_reflect_assign(&laws[WOODS], 1, p);
+            const double power =
+                cases[n].soil * pow(10, soil_db / 10) + cases[n].woods * pow(10, woods_db / 10);
+            const double db = db_reflect_assign_among(laws, cases[n].around, 1, p);
+            assert_true(fabs(db - 10 * log10(power)) < 1e-9);
+        }
+    }
+    for (uint8_t own = TOWN; own <= ROAD; own++) {
+        const uint8_t around[9] = {SOIL, SOIL, SOIL, WOODS, own, WOODS, SOIL, SOIL, SOIL};
+        const struct reflect_place p = near_by(own, 5);
+        assert_true(fabs(db_reflect_assign_among(laws, around, 1, p) -
+                         db_reflect_assign(&laws[own], 1, p)) < 1e-12);
+    }
+}
+
 static int by_value(const void *a, const void *b)
 {
     const double x = *(const double *)a, y = *(const double *)b;
@@ -440,6 +481,43 @@ TEST(assigned_rasters_have_each_classes_mean_spread_and_limits)
                      0);
     read_values("g2.tif", again, valid);
     assert_memory_equal(values, again, sizeof values);
+}
+
+/* Rows two and two of two classes without spread, in more rows than are read at a time. */
+TEST(assigned_rasters_are_mixed_at_borders_whatever_block_a_row_is_in)
+{
+    enum { WIDE = 12000, HIGH = 803 };
+    float *plane = calloc((size_t)WIDE * HIGH, sizeof *plane);
+    uint8_t *valid = calloc(WIDE, HIGH);
+    struct db_grid grid = fixture_grid(WIDE, HIGH);
+    struct db_raster r;
+    for (int i = 0; i < WIDE * HIGH; i++) {
+        plane[i] = (float)(i / WIDE / 2 % 2);
+    }
+    fixture_raster("rows.tif", &grid, GDT_Byte, plane, 255);
+    OSRDestroySpatialReference(grid.crs);
+    fixture_write("rows.classes",
+                  "[a]\ncolour = 1 1 1\nkind = ground\ngamma_db = -20\n"
+                  "spread_db = 0\nlimits_db = -30 -10\n"
+                  "[b]\ncolour = 2 2 2\nkind = ground\ngamma_db = -10\n"
+                  "spread_db = 0\nlimits_db = -30 0\n");
+    assert_int_equal(fixture_run(NULL, 0, "reflect --class-raster %s --classes %s --out %s",
+                                 fixture_path("rows.tif"), fixture_path("rows.classes"),
+                                 fixture_path("mixed.tif")),
+                     0);
+    assert_int_equal(db_raster_open_one(&r, fixture_path("mixed.tif")), 0);
+    assert_true(db_raster_block_rows(&r.grid, 11) < HIGH);
+    assert_int_equal(db_raster_read(&r, 0, HIGH, plane, valid), 0);
+    db_raster_close(&r);
+    for (int i = WIDE; i < WIDE * (HIGH - 1); i++) {
+        const bool is_b = i / WIDE / 2 % 2;
+        const double wanted = is_b ? 0.75 * 0.1 + 0.25 * 0.01 : 0.75 * 0.01 + 0.25 * 0.1;
+        const bool is_edge = i % WIDE == 0 || i % WIDE == WIDE - 1;
+        assert_true(is_edge || fabs((double)plane[i] - 10 * log10(wanted)) < 1e-4);
+    }
+    assert_true(fabs((double)plane[0] + 20) < 1e-4);
+    free(plane);
+    free(valid);
 }
 
 TEST(the_command_gives_spots_to_towns_whose_pixels_are_longer_than_a_house)
