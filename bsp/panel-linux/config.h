@@ -37,7 +37,7 @@ struct config_stick {
 
 /* Values of the options. An empty name means none, or the driver's choice. */
 struct config {
-    char database[CONFIG_PATH];
+    char database[CONFIG_PATH], radar[CONFIG_PATH];
     char can[CONFIG_NAME];
     const struct lm_bus_profile *can_profile;
     uint32_t can_node;

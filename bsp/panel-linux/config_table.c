@@ -21,6 +21,10 @@ const struct config_row config_table[] = {
     OPTION(CONFIG_PATH_TO, database, 0, ROOM(database), NULL, "database", "PATH",
            "/var/lib/landmass-panel/database.lmdb",
            "The database in flash: a file, or an MTD device such as /dev/mtd0."),
+    OPTION(
+        CONFIG_PATH_TO, radar, 0, ROOM(radar), "none", "radar", "PATH | none", "none",
+        "Table of the radar, a record that landmass-radar wrote. none: the database's, or the "
+        "one that is built in. A record that cannot be used leaves the glass without a picture."),
     OPTION(CONFIG_TEXT, can, 0, 16, "none", "can", "INTERFACE | none", "can0",
            "SocketCAN interface of the avionics bus."),
     OPTION(CONFIG_PROFILE, can_profile, 0, 0, NULL, "can.profile", "PROFILE", "canas17",

@@ -1,11 +1,13 @@
 #include "panel.h"
 
 #include "drv/not_fitted.h"
+#include "lm/radar_record.h"
 #include "lm/sensor.h"
 #include "report.h"
 
 #include <errno.h>
 #include <signal.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/signalfd.h>
@@ -94,6 +96,35 @@ static void start_with_flash(struct panel *p, const struct lm_flash *flash)
     }
 }
 
+/* The table that the configuration names. A panel that was told its radar shows no other's picture:
+ * without the table it has no database. */
+static const struct lm_flash *choose_radar(struct panel *p, const struct lm_flash *flash)
+{
+    const char *path = p->config->radar;
+    uint8_t record[LM_RADAR_RECORD_BYTES + 1];
+    if (path[0] == '\0') {
+        return flash;
+    }
+    FILE *file = fopen(path, "rb");
+    if (file == NULL) {
+        report(REPORT_ERROR, "%s: %s; landmass-radar record writes it", path, strerror(errno));
+        return &drv_no_flash;
+    }
+    const size_t bytes = fread(record, 1, sizeof record, file);
+    fclose(file);
+    const int status = lm_radar_unpack(&p->radar, record, (uint32_t)bytes);
+    if (status != LM_OK) {
+        report(REPORT_ERROR, "%s: %s; write it again with landmass-radar record", path,
+               status == LM_ERR_VERSION ? "a radar table of another version"
+               : status == LM_ERR_TABLE ? "a radar table that breaks its contract"
+                                        : "no radar table, or a damaged one");
+        return &drv_no_flash;
+    }
+    report(REPORT_INFO, "%s: radar %s", path, p->radar.name);
+    p->board.radar = &p->radar;
+    return flash;
+}
+
 static int start_unit(struct panel *p, const struct lm_flash *flash)
 {
     const size_t pixels = (size_t)p->glass.port.width_px * p->glass.port.height_px;
@@ -119,7 +150,8 @@ static int start_unit(struct panel *p, const struct lm_flash *flash)
         report(REPORT_ERROR, "start: out of memory");
         return -1;
     }
-    start_with_flash(p, flash);
+    p->board.flash = choose_radar(p, flash);
+    start_with_flash(p, p->board.flash);
     p->flash.patience_us = 0;
     return 0;
 }

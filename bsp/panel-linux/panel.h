@@ -31,7 +31,8 @@ struct panel {
     struct hand hand;
     struct lm_controls controls;
     struct drv_watchdog watchdog;
-    int signals; /* file descriptor of signalfd */
+    int signals;           /* file descriptor of signalfd */
+    struct lm_radar radar; /* of the configuration, where it names one */
     struct lm_board board;
     struct lm_unit *unit; /* owned */
     uint32_t flags_told;  /* enum lm_flag, as reported last */

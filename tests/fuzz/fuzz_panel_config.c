@@ -30,6 +30,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
     config_defaults(&c);
     FUZZ_ASSERT(config_read(&c, (const char *)data, size, count, &told) == told);
     FUZZ_ASSERT(is_text(c.database, sizeof c.database) && c.database[0] == '/');
+    FUZZ_ASSERT(is_text(c.radar, sizeof c.radar) && (c.radar[0] == '/' || c.radar[0] == '\0'));
     FUZZ_ASSERT(is_text(c.can, 16) && is_text(c.glass_connector, 32));
     FUZZ_ASSERT(c.tiles >= 120 && c.tiles <= 512 && c.seed <= 2147483647);
     FUZZ_ASSERT(c.glass <= CONFIG_GLASS_NONE && c.glass_turn <= DRV_TURN_270);

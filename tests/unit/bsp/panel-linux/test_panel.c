@@ -1,6 +1,7 @@
 /* The whole panel, without devices and with a bus and a flash: what it does in its loop, and what
  * it must not do there. The kernel's side of each device is tested in the virtual machine. */
 #include "check.h"
+#include "lm/radar_record.h"
 #include "panel.h"
 #include "support.h"
 #include "unit_rig.h"
@@ -213,6 +214,71 @@ TEST(a_database_that_needs_more_tiles_is_said_on_the_glass)
     panel_close(&p);
     unlink(c.database);
     tiny_image_free(&image);
+}
+
+/* Open a panel over the rig's country whose option radar names a file of these bytes; NULL: a file
+ * that is not there. */
+static void open_with_radar(struct panel *p, struct config *c, const uint8_t *record, size_t bytes)
+{
+    struct rig *r = make_rig();
+    *c = nothing_fitted();
+    support_run("mkdir -p %s/tmp", support_build_dir());
+    snprintf(c->database, sizeof c->database, "%s/tmp/panel-radar.lmdb", support_build_dir());
+    snprintf(c->radar, sizeof c->radar, "%s/tmp/panel.radar", support_build_dir());
+    assert_int_equal(tiny_image_write(&r->image, c->database), 0);
+    unlink(c->radar);
+    if (record) {
+        FILE *file = fopen(c->radar, "wb");
+        assert_non_null(file);
+        assert_int_equal(fwrite(record, 1, bytes, file), bytes);
+        fclose(file);
+    }
+    assert_int_equal(panel_open(p, c), 0);
+    free_rig(r);
+}
+
+static void close_with_radar(struct panel *p, const struct config *c)
+{
+    panel_close(p);
+    unlink(c->database);
+    unlink(c->radar);
+}
+
+TEST(a_radar_of_the_configuration_is_the_one_that_flies)
+{
+    struct panel p;
+    struct config c;
+    struct lm_radar radar = lm_radar_default;
+    uint8_t record[LM_RADAR_RECORD_BYTES];
+    strcpy(radar.name, "PANEL");
+    lm_radar_pack(&radar, record);
+    open_with_radar(&p, &c, record, sizeof record);
+    assert_true(p.unit->map.is_usable);
+    assert_int_equal(p.unit->map.radar_origin, LM_RADAR_OF_BOARD);
+    assert_string_equal(p.unit->map.radar->name, "PANEL");
+    close_with_radar(&p, &c);
+}
+
+TEST(a_radar_that_cannot_be_read_leaves_no_picture_of_another)
+{
+    uint8_t record[LM_RADAR_RECORD_BYTES + 1] = {0};
+    lm_radar_pack(&lm_radar_default, record);
+    const struct {
+        const uint8_t *bytes;
+        size_t count;
+    } files[] = {{NULL, 0},
+                 {record, 0},
+                 {record, LM_RADAR_RECORD_BYTES - 1},
+                 {record, LM_RADAR_RECORD_BYTES + 1},
+                 {record + 1, LM_RADAR_RECORD_BYTES}};
+    for (size_t i = 0; i < sizeof files / sizeof files[0]; i++) {
+        struct panel p;
+        struct config c;
+        open_with_radar(&p, &c, files[i].bytes, files[i].count);
+        panel_step(&p, 0);
+        assert_true((p.unit->flags & LM_FLAG_DB) != 0);
+        close_with_radar(&p, &c);
+    }
 }
 
 TEST(the_hand_controllers_ring_reaches_the_page)

@@ -1,8 +1,13 @@
-/* A unit with tables at the ends of what the contract allows, under the address and undefined-
- * behaviour sanitizers: every field of view and a patch are drawn, and nothing overflows. */
+/* A unit with tables at the ends of what the contract allows and of random numbers inside them,
+ * under the address and undefined-behaviour sanitizers: every field of view and a patch are drawn,
+ * with targets and weather, and nothing overflows. A table may come from an image: its numbers are
+ * as hostile as those of any file.
+ *
+ * SEED=n tries other tables, TABLES=n more of them. */
 #include "check.h"
 #include "lm/image.h"
 #include "lm/radar_check.h"
+#include "target_support.h"
 #include "unit_rig.h"
 
 #include "hs/rng.h"
@@ -141,8 +146,52 @@ static void draw_patch(struct rig *r, uint32_t cell_mm)
     assert_int_equal(r->unit.count.commands_refused, refused);
 }
 
-/* Fly with a table, low and high. */
-static void fly(const struct lm_radar *table, double height_m)
+/* A section of targets round the middle of the image: still, moving, and of bodies. */
+static void add_targets(struct rig *r, struct hs_rng *rng)
+{
+    enum { TARGETS = 4 };
+    struct {
+        struct lm_targets_head head;
+        struct lm_target records[TARGETS];
+    } section = {.head = {.count = TARGETS, .record_bytes = LM_TARGET_BYTES}};
+    section.head.crc = fx_crc32c(0, &section.head, offsetof(struct lm_targets_head, crc));
+    for (uint32_t i = 0; i < TARGETS; i++) {
+        struct lm_target *t = &section.records[i];
+        const double north = hs_rng_uniform(rng) * 0.02, east = hs_rng_uniform(rng) * 0.02;
+        *t = i % 2 ? random_target(rng, 200000) : point_at(46, 11, 300, 60 - 20.0 * i);
+        t->id = i;
+        t->latitude = hs_bam(45.99 + north), t->longitude = hs_bam(10.99 + east);
+        t->speed_mm_s = hs_rng_below(rng, 2) * hs_rng_below(rng, LM_TARGET_SPEED_MAX_MM_S);
+        t->leg_m = t->speed_mm_s ? 1 + hs_rng_below(rng, 10000) : 0;
+        seal_target(t);
+    }
+    assert_int_equal(tiny_image_add_section(&r->image, LM_IMAGE_TARGETS, &section, sizeof section),
+                     0);
+    memory_flash_open(&r->board.flash, r->image.bytes, r->image.size);
+}
+
+/* The worst that an environment may be, near the aircraft. */
+static struct lm_environment random_weather(struct hs_rng *rng)
+{
+    struct lm_environment e = {.rain_count = LM_RAINS_MAX,
+                               .jammer_count = LM_JAMMERS_MAX,
+                               .sea_state = (uint8_t)hs_rng_below(rng, LM_SEA_STATE_MAX + 1),
+                               .is_sea_commanded = true,
+                               .has_wind = hs_rng_below(rng, 2) != 0,
+                               .wind_from = (fx_bam_t)hs_rng_u64(rng)};
+    for (uint32_t i = 0; i < LM_RAINS_MAX; i++) {
+        const struct lm_position place = {hs_bam(45.9 + 0.2 * hs_rng_uniform(rng)),
+                                          hs_bam(10.9 + 0.2 * hs_rng_uniform(rng))};
+        e.rain[i] = (struct lm_rain){place, 100 + hs_rng_below(rng, 99901),
+                                     (uint16_t)(1 + hs_rng_below(rng, 150))};
+        e.jammer[i] =
+            (struct lm_jammer){place, (int16_t)((int32_t)hs_rng_below(rng, 101 * 256) - 20 * 256)};
+    }
+    return e;
+}
+
+/* Fly with a table, low and high; with targets and weather where there is a source of them. */
+static void fly(const struct lm_radar *table, double height_m, struct hs_rng *rng)
 {
     struct lm_radar_fault fault = {"", 0, NULL};
     if (lm_radar_check(table, &fault) != LM_OK) {
@@ -152,9 +201,20 @@ static void fly(const struct lm_radar *table, double height_m)
     r->image.bytes[offsetof(struct lm_image_header, sensor)] = table->sensor;
     tiny_image_seal(&r->image);
     r->board.lent.radar = table;
+    if (rng) {
+        add_targets(r, rng);
+        r->bus.speed_m_s = 1 + hs_rng_below(rng, 1400);
+        r->bus.turn_deg_s = hs_rng_below(rng, 60) - 30.0;
+    }
     r->bus.height_m = height_m;
     assert_int_equal(lm_unit_init(&r->unit, &r->board.lent), LM_OK);
     run(r, 0.1);
+    if (rng) {
+        command(r, (struct lm_control){.kind = LM_CONTROL_ENVIRONMENT,
+                                       .environment = random_weather(rng)});
+        command(r, (struct lm_control){.kind = LM_CONTROL_GAIN,
+                                       .gain_db = (int32_t)hs_rng_below(rng, 61) - 30});
+    }
     for (uint32_t mode = 0; mode < LM_SECTOR_MODES; mode++) {
         draw_mode(r, mode);
     }
@@ -174,7 +234,7 @@ TEST(a_table_with_one_field_at_its_end_is_drawn)
                 lm_radar_field_set(&table, f, i, end == 0 ? f->min : f->max);
             }
             repair(&table);
-            fly(&table, n % 2 ? 2000 : 12000);
+            fly(&table, n % 2 ? 2000 : 12000, NULL);
         }
     }
 }
@@ -196,6 +256,42 @@ TEST(tables_with_many_fields_at_their_ends_are_drawn)
             }
         }
         repair(&table);
-        fly(&table, 500 + 600.0 * turn);
+        fly(&table, 500 + 600.0 * turn, NULL);
+    }
+}
+
+/* A number of the field's range: an end, any, or one near the lower end, where ranges over several
+ * powers of ten have their small numbers. */
+static int64_t random_number(struct hs_rng *rng, const struct lm_radar_field *f)
+{
+    const uint64_t span = (uint64_t)(f->max - f->min);
+    switch (hs_rng_below(rng, 4)) {
+    case 0:
+        return hs_rng_below(rng, 2) ? f->max : f->min;
+    case 1:
+        return f->min + (int64_t)((hs_rng_u64(rng) >> hs_rng_below(rng, 63)) % (span + 1));
+    default:
+        return f->min + (int64_t)(hs_rng_u64(rng) % (span + 1));
+    }
+}
+
+TEST(any_table_is_drawn_with_targets_in_any_weather)
+{
+    const char *seed = getenv("SEED"), *tables = getenv("TABLES");
+    const uint32_t count = tables ? (uint32_t)strtoul(tables, NULL, 10) : RANDOM_TABLES;
+    struct hs_rng rng;
+    hs_rng_seed(&rng, seed ? strtoul(seed, NULL, 10) : 2);
+    for (uint32_t turn = 0; turn < count; turn++) {
+        struct lm_radar table = full_table();
+        for (uint32_t n = 0; lm_radar_field(n); n++) {
+            const struct lm_radar_field *f = lm_radar_field(n);
+            for (uint32_t i = 0; i < f->count; i++) {
+                if (hs_rng_below(&rng, 4) != 0) {
+                    lm_radar_field_set(&table, f, i, random_number(&rng, f));
+                }
+            }
+        }
+        repair(&table);
+        fly(&table, 100 + hs_rng_below(&rng, 15000), &rng);
     }
 }
