@@ -338,15 +338,20 @@ static char *side_name(const char *path)
     return asprintf(&name, "%s.aux.xml", path) < 0 ? NULL : name;
 }
 
+static int rename_or_remove(const char *from, const char *to)
+{
+    if (access(from, F_OK) == 0) {
+        return hs_atomic_rename(from, to);
+    }
+    unlink(to); /* It belonged to the file that is replaced. */
+    return 0;
+}
+
 static int rename_side_file(const struct db_raster_out *out)
 {
     char *from = side_name(out->temporary), *to = side_name(out->path);
-    int result = from && to ? 0 : hs_error(out->path, NULL, "out of memory");
-    if (result == 0 && access(from, F_OK) == 0) {
-        result = hs_atomic_rename(from, to);
-    } else if (result == 0) {
-        unlink(to); /* It belonged to the file that is replaced. */
-    }
+    const int result =
+        from && to ? rename_or_remove(from, to) : hs_error(out->path, NULL, "out of memory");
     free(from);
     free(to);
     return result;

@@ -1,10 +1,10 @@
 /* KMZ: a ZIP archive, read by libzip. Its KML is doc.kml, or else the first that is there (OGC
  * 07-147r2, annex C). */
 #include "read_formats.h"
+#include "whole_text.h"
 
 #include "hs/error.h"
 
-#include <stdlib.h>
 #include <string.h>
 #include <strings.h>
 #include <zip.h>
@@ -37,32 +37,9 @@ static zip_int64_t find_kml(zip_t *archive)
 }
 
 /* The declared size is only a hint; the text ends where the data do, or at the limit. */
-static char *inflate_entry(zip_file_t *entry, size_t *size)
+static int64_t read_entry(void *context, void *to, size_t bytes)
 {
-    size_t capacity = 1 << 16, used = 0;
-    char *text = malloc(capacity + 1);
-    while (text) {
-        const zip_int64_t n = zip_fread(entry, text + used, capacity - used);
-        if (n < 0) {
-            break;
-        }
-        used += (size_t)n;
-        if (n == 0) {
-            text[used] = '\0';
-            *size = used;
-            return text;
-        }
-        if (used == capacity) {
-            capacity *= 2;
-            char *grown = capacity <= KML_BYTES_MOST ? realloc(text, capacity + 1) : NULL;
-            if (!grown) {
-                break;
-            }
-            text = grown;
-        }
-    }
-    free(text);
-    return NULL;
+    return zip_fread(context, to, bytes);
 }
 
 static char *unpack(zip_t *archive, const char *name, size_t *size)
@@ -73,8 +50,8 @@ static char *unpack(zip_t *archive, const char *name, size_t *size)
         return NULL;
     }
     zip_file_t *entry = zip_fopen_index(archive, (zip_uint64_t)index, 0);
-    char *text = entry ? inflate_entry(entry, size) : NULL;
-    if (!text) {
+    char *text = NULL;
+    if (!entry || nav_whole_text(read_entry, entry, KML_BYTES_MOST, &text, size) != 0) {
         hs_error(name, remedy, "holds a KML file that is damaged, encrypted or above %d MB",
                  KML_BYTES_MOST >> 20);
     }

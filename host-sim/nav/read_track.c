@@ -1,6 +1,7 @@
 #include "nav/read_track.h"
 
 #include "read_formats.h"
+#include "whole_text.h"
 
 #include "hs/error.h"
 #include "hs/input_file.h"
@@ -90,40 +91,31 @@ int nav_read_text(char *text, size_t size, enum nav_format format, struct nav_tr
     return 0;
 }
 
-enum { CHUNK_BYTES = 1 << 20 };
 #define LARGEST_TEXT_BYTES ((size_t)1 << 31)
+
+static int64_t read_gz(void *context, void *to, size_t bytes)
+{
+    const size_t most = 1 << 30; /* gzread counts in int */
+    return gzread(context, to, (unsigned)(bytes < most ? bytes : most));
+}
 
 /* The whole text of a plain or compressed file, ending in '\0'; the caller frees. NULL when
  * reported. */
 static char *read_all(gzFile file, const char *name, size_t *size)
 {
-    size_t capacity = CHUNK_BYTES, used = 0;
-    char *text = malloc(capacity + 1);
-    while (text) {
-        const int n = gzread(file, text + used, (unsigned)(capacity - used));
-        if (n < 0) {
-            int code;
-            hs_error(name, "copy the file again", "cannot be read: %s", gzerror(file, &code));
-            break;
-        }
-        used += (size_t)n;
-        if (n == 0) {
-            text[used] = '\0';
-            *size = used;
-            return text;
-        }
-        if (used == capacity) {
-            capacity *= 2;
-            char *grown = capacity <= LARGEST_TEXT_BYTES ? realloc(text, capacity + 1) : NULL;
-            if (!grown) {
-                hs_error(name, "cut it into parts", "is too large");
-                break;
-            }
-            text = grown;
-        }
+    char *text;
+    int code;
+    switch (nav_whole_text(read_gz, file, LARGEST_TEXT_BYTES, &text, size)) {
+    case NAV_WHOLE_UNREADABLE:
+        hs_error(name, "copy the file again", "cannot be read: %s", gzerror(file, &code));
+        break;
+    case NAV_WHOLE_TOO_LARGE:
+        hs_error(name, "cut it into parts", "is too large");
+        break;
+    case NAV_WHOLE_DONE:
+        break;
     }
-    free(text);
-    return NULL;
+    return text;
 }
 
 int nav_read_track(const char *path, enum nav_format format, struct nav_track *t,

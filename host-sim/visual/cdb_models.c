@@ -176,7 +176,7 @@ static char **list_folder(char **members, const char *folder)
 /* All models: those of places in archives by tile, those of kinds in a library of their own. */
 static int list_members(struct placing *p, struct visual_cdb *cdb)
 {
-    struct cdb_tiles archives;
+    struct cdb_tiles archives = {.items = NULL};
     char folder[CDB_PATH_SIZE];
     if (visual_cdb_tiles(cdb, &archives, 300, ".zip\0") != 0) {
         return -1;
@@ -447,7 +447,7 @@ static int place_tile(struct placing *p, const struct cdb_tile *t)
 
 static int place_dataset(struct placing *p, struct visual_cdb *cdb, int dataset)
 {
-    struct cdb_tiles tiles;
+    struct cdb_tiles tiles = {.items = NULL};
     if (visual_cdb_tiles(cdb, &tiles, dataset, ".shp\0") != 0) {
         return -1;
     }
