@@ -2,6 +2,7 @@
  * against what was measured there, and a day on Earth against what is known of days. */
 #include "check.h"
 #include "hs/class_table.h"
+#include "hs/rng.h"
 #include "infrared/ground.h"
 #include "infrared/planck.h"
 #include "infrared/surface.h"
@@ -383,6 +384,61 @@ TEST(a_day_gives_back_what_it_took)
         print_message("# %-12s %+.3f W/m2\n", t.items[i].name, sum);
         assert_true(fabs(sum) < 1);
     }
+}
+
+static double between(struct hs_rng *rng, double low, double high)
+{
+    return low + (high - low) * hs_rng_uniform(rng);
+}
+
+static double ratio_between(struct hs_rng *rng, double low, double high)
+{
+    return low * pow(high / low, hs_rng_uniform(rng));
+}
+
+/* Whatever a class table and the options allow: temperatures stay near those of the air, and what
+ * enters the ground in a day leaves it, but for what a tenth of a kelvin would bring. */
+TEST(any_ground_in_any_weather_comes_to_a_balance)
+{
+    enum { DAYS = 200 };
+    struct hs_rng rng;
+    hs_rng_seed(&rng, 5);
+    int slow = 0;
+    double worst_kelvin = 0;
+    for (int i = 0; i < DAYS; i++) {
+        const struct ir_surface s = {.emissivity = between(&rng, 0.05, 0.999),
+                                     .albedo = between(&rng, 0, 0.95),
+                                     .conductivity = ratio_between(&rng, 0.01, 10000),
+                                     .heat_capacity = 1e6 * ratio_between(&rng, 0.01, 10),
+                                     .wetness = between(&rng, 0, 1),
+                                     .roughness_m = ratio_between(&rng, 1e-6, 5),
+                                     .rise_east = between(&rng, -0.8, 0.8),
+                                     .rise_north = between(&rng, -0.8, 0.8)};
+        const struct ir_weather w = {.latitude = between(&rng, -pi / 2, pi / 2),
+                                     .day_of_year = 1 + (int)between(&rng, 0, 365),
+                                     .air_kelvin = between(&rng, 213, 323),
+                                     .air_range_kelvin = between(&rng, 0, 40),
+                                     .humidity = between(&rng, 0.01, 1),
+                                     .wind_m_s = between(&rng, 0, 40),
+                                     .cloud = between(&rng, 0, 1)};
+        static double kelvin[IR_STEPS];
+        double sum = 0, per_kelvin = 0;
+        slow += ir_surface_day(&s, &w, kelvin) == IR_PERIODS_MAX;
+        for (int k = 0; k < IR_STEPS; k++) {
+            const struct ir_air air = ir_weather_at(&w, (k + 1) * 24.0 / IR_STEPS);
+            if (!(kelvin[k] > air.kelvin - 90 && kelvin[k] < air.kelvin + 150)) {
+                fail_msg("ground %d at step %d: %g K in air of %g K", i, k, kelvin[k], air.kelvin);
+            }
+            const double in = ir_surface_inflow_w_m2(&s, &air, kelvin[k]);
+            sum += in;
+            per_kelvin += in - ir_surface_inflow_w_m2(&s, &air, kelvin[k] + 1);
+        }
+        worst_kelvin = fmax(worst_kelvin, fabs(sum / per_kelvin));
+    }
+    print_message("# a day off its balance by %.4f K at most\n", worst_kelvin);
+    assert_true(worst_kelvin < 0.1);
+    print_message("# %d of %d days did not settle\n", slow, DAYS);
+    assert_int_equal(slow, 0);
 }
 
 TEST_GROUP(NULL, NULL);
