@@ -39,6 +39,9 @@ static struct ir_surface of_slope(const struct db_thermal *t, int a, int b)
 void ir_class_days_make(struct ir_class_days *days, const struct db_thermal *t,
                         const struct ir_weather *w, bool has_slopes)
 {
+    struct ir_surface shaded = ir_surface_of_class(t);
+    shaded.is_shaded = true;
+    ir_surface_day(&shaded, w, days->shade);
     for (int i = 0; i < IR_KNOTS; i++) {
         for (int k = 0; k < IR_KNOTS; k++) {
             const int a = i - MIDDLE, b = k - MIDDLE;
@@ -64,6 +67,9 @@ void ir_class_days_set_mean(struct ir_class_days *days, double kelvin)
     for (int i = 0; i < IR_KNOTS * IR_KNOTS * IR_STEPS; i++) {
         value[i] += shift;
     }
+    for (int i = 0; i < IR_STEPS; i++) { /* Water mixes: its shade is as warm. */
+        days->shade[i] = days->property[MIDDLE][MIDDLE][i];
+    }
 }
 
 void ir_class_hour_of(struct ir_class_hour *hour, const struct ir_class_days *days, double hour_h)
@@ -74,6 +80,7 @@ void ir_class_hour_of(struct ir_class_hour *hour, const struct ir_class_days *da
             hour->slope[i][k] = ir_day_value(days->slope[i][k], hour_h);
         }
     }
+    hour->shade = ir_day_value(days->shade, hour_h);
 }
 
 /* Bilinear between the knots, `x` and `y` in steps from the middle one. */
@@ -89,7 +96,11 @@ static double between(const double knots[IR_KNOTS][IR_KNOTS], double x, double y
 
 double ir_class_hour_at(const struct ir_class_hour *hour, const struct ir_place *place)
 {
-    return between(hour->property, place->albedo_rank, place->conductivity_rank) +
-           between(hour->slope, place->rise_east / rise_step, place->rise_north / rise_step) -
-           hour->slope[MIDDLE][MIDDLE];
+    const double by_slope =
+        between(hour->slope, place->rise_east / rise_step, place->rise_north / rise_step) -
+        hour->slope[MIDDLE][MIDDLE];
+    /* A slope that the sun does not reach has no more to lose to a shadow. */
+    const double by_beam = fmax(0, hour->property[MIDDLE][MIDDLE] + by_slope - hour->shade);
+    return between(hour->property, place->albedo_rank, place->conductivity_rank) + by_slope -
+           place->hidden * by_beam;
 }

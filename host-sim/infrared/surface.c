@@ -35,7 +35,8 @@ static double sun_w_m2(const struct ir_surface *s, const struct ir_air *air)
     const double up = 1 / sqrt(1 + s->rise_east * s->rise_east + s->rise_north * s->rise_north);
     const double facing =
         up * (air->sun[2] - s->rise_east * air->sun[0] - s->rise_north * air->sun[1]);
-    return air->beam_w_m2 * fmax(0, facing) + air->diffuse_w_m2 * (1 + up) / 2;
+    const double beam = s->is_shaded ? 0 : air->beam_w_m2;
+    return beam * fmax(0, facing) + air->diffuse_w_m2 * (1 + up) / 2;
 }
 
 double ir_surface_inflow_w_m2(const struct ir_surface *s, const struct ir_air *air, double kelvin)

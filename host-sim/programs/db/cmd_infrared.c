@@ -1,5 +1,6 @@
 /* landmass-db infrared: a class raster in, pictures of what a thermal camera sees at given hours.
  */
+#include "cast_shadow.h"
 #include "commands.h"
 #include "ground_slope.h"
 #include "infrared_curves.h"
@@ -46,7 +47,8 @@ static const struct hs_usage usage = {
         "local solar time.\n"
         "Within a class places differ in albedo, conductivity and emissivity by its spreads, and "
         "with --terrain\n"
-        "in slope. Not computed: shadows, melting, heat of people, and the air between the ground "
+        "in slope, with --shadows in sunshine. Not computed: melting, heat of people, and the air "
+        "between the ground "
         "and the camera.\n\n"
         "Example:\n"
         "  landmass-db infrared --class-raster scene-classes.tif --classes heaton6.classes \\\n"
@@ -54,12 +56,12 @@ static const struct hs_usage usage = {
 };
 
 struct options {
-    const char *class_raster, *classes, *out, *terrain;
+    const char *class_raster, *classes, *out, *terrain, *heights;
     struct hs_list hours;
     int month, day;
     double latitude_deg, air_c, air_range, humidity_percent, wind_m_s, cloud, water_c;
     long seed;
-    bool ignores_names;
+    bool ignores_names, has_shadows;
 };
 
 struct work {
@@ -72,6 +74,7 @@ struct work {
     struct db_class_numbers numbers;
     struct pixel_places places;
     struct ground_slope slope;
+    struct cast_shadow shadow;
     double hours[HOURS_MAX];
     int hour_count;
     float *values, *radiance; /* owned: of a block of rows */
@@ -136,6 +139,13 @@ static bool read_options(struct options *o, int argc, char **argv, int *exit_cod
          false},
         {"terrain", HS_INPUT, &o->terrain, 0, 0, "DEM",
          "Elevation model in any CRS: slopes are as warm as they face the sun.", false},
+        {"heights", HS_INPUT, &o->heights, 0, 0, "FILE",
+         "With --shadows: metres of buildings and trees above the terrain, on the class raster's "
+         "grid.",
+         false},
+        {"shadows", HS_FLAG, &o->has_shadows, 0, 0, NULL,
+         "What --terrain and --heights hide from the sun is colder, and stays so for hours.",
+         false},
         {"seed", HS_INTEGER, &o->seed, 0, 2147483647, "N",
          "Seed of the differences within a class, as that of `reflect`.", false},
     };
@@ -211,6 +221,18 @@ static int alloc_block(struct work *w)
                : hs_error(w->options->out, NULL, "out of memory");
 }
 
+static int open_shadows(struct work *w)
+{
+    const struct options *o = w->options;
+    const struct reflect_place *row = w->places.row;
+    const int middle = w->classes.grid.width / 2;
+    pixel_places_row(&w->places, w->classes.grid.height / 2);
+    const struct reflect_place a = row[middle], b = row[middle > 0 ? middle - 1 : 0];
+    const double pixel_m[2] = {hypot(hypot(a.x - b.x, a.y - b.y), a.z - b.z), w->places.pixel_m};
+    return cast_shadow_open(&w->shadow, &w->classes.grid, o->terrain ? &w->slope : NULL, o->heights,
+                            pixel_m);
+}
+
 static int prepare(struct work *w)
 {
     const struct options *o = w->options;
@@ -226,7 +248,7 @@ static int prepare(struct work *w)
         ground_slope_open(&w->slope, o->terrain, &w->classes.grid, w->block_rows) != 0) {
         return -1;
     }
-    return set_weather(w);
+    return set_weather(w) != 0 || (o->has_shadows && open_shadows(w) != 0) ? -1 : 0;
 }
 
 static void make_days(struct work *w)
@@ -260,6 +282,9 @@ static void take_pixel(struct work *w, struct shot *s, size_t i, int y)
     };
     if (w->options->terrain) {
         ground_slope_at(&w->slope, &w->places, column, y, &place.rise_east, &place.rise_north);
+    }
+    if (w->options->has_shadows) {
+        place.hidden = cast_shadow_at(&w->shadow, column, y);
     }
     const double kelvin = ir_class_hour_at(&s->classes[c], &place);
     const double reflected = pow(10, db_reflect_assign(&w->laws[c], seed, p) / 10);
@@ -359,6 +384,7 @@ static int open_shot(struct work *w, struct shot *s, double hour)
         ir_class_hour_of(&s->classes[i], &w->days[i], hour);
     }
     s->air = ir_weather_at(&w->weather, hour);
+    w->shadow.sun_count = ir_past_suns(&w->weather, hour, w->shadow.suns);
     if (path_of(w, path, hour, "tif") != 0 ||
         db_preview_init(&s->preview, &w->classes.grid, 1) != 0 ||
         db_raster_create_bands(&s->out, path, &w->classes.grid, &kind) != 0) {
@@ -435,7 +461,10 @@ int db_cmd_infrared(int argc, char **argv)
     }
     w->options = &options;
     if (read_options(&options, argc, argv, &exit_code)) {
-        exit_code = run(w);
+        const bool is_bare = options.has_shadows && !options.terrain && !options.heights;
+        exit_code = is_bare ? hs_options_wrong(&usage, "--shadows",
+                                               "needs what casts them: --terrain or --heights")
+                            : run(w);
     }
     free(w->values);
     free(w->radiance);
@@ -443,6 +472,7 @@ int db_cmd_infrared(int argc, char **argv)
     free(w->class_of);
     free(w->days);
     ground_slope_close(&w->slope);
+    cast_shadow_close(&w->shadow);
     pixel_places_close(&w->places);
     db_raster_close(&w->classes);
     hs_list_free(&options.hours);

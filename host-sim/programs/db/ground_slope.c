@@ -103,3 +103,9 @@ void ground_slope_at(const struct ground_slope *s, const struct pixel_places *pl
     *east = rise(s, line[west], line[right], hypot(hypot(b.x - a.x, b.y - a.y), b.z - a.z));
     *north = rise(s, line[width + column], line[column - width], 2 * places->pixel_m);
 }
+
+double ground_slope_elevation_m(const struct ground_slope *s, int column, int row)
+{
+    const float at = s->heights[(size_t)(row - s->y + 1) * (size_t)s->grid->width + (size_t)column];
+    return at > nothing ? (double)at * s->metres : 0;
+}

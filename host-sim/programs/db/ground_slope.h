@@ -31,4 +31,7 @@ int ground_slope_rows(struct ground_slope *s, int y, int rows);
 void ground_slope_at(const struct ground_slope *s, const struct pixel_places *places, int column,
                      int row, double *east, double *north);
 
+/* Elevation of a pixel of these rows, metres; 0 where there is none. */
+double ground_slope_elevation_m(const struct ground_slope *s, int column, int row);
+
 #endif

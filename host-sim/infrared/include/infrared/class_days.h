@@ -13,24 +13,27 @@ struct ir_class_days {
     double property[IR_KNOTS][IR_KNOTS][IR_STEPS];
     /* By the rise towards east and north, -0.8, -0.4 .. 0.8, with the means of the class. */
     double slope[IR_KNOTS][IR_KNOTS][IR_STEPS];
+    /* With the means of the class, level, where the sun never shines. */
+    double shade[IR_STEPS];
 };
 
 /* Temperatures of a class at one time. */
 struct ir_class_hour {
-    double property[IR_KNOTS][IR_KNOTS], slope[IR_KNOTS][IR_KNOTS];
+    double property[IR_KNOTS][IR_KNOTS], slope[IR_KNOTS][IR_KNOTS], shade;
 };
 
 /* What a place differs in. */
 struct ir_place {
     double albedo_rank, conductivity_rank;
     double rise_east, rise_north;
+    double hidden; /* share of the beam's warmth that did not reach it, 0..1 (past_suns.h) */
 };
 
 /* The surface that has the means of a class. */
 struct ir_surface ir_surface_of_class(const struct db_thermal *t);
 
-/* Compute all. Slopes are left out, and count as level, unless `has_slopes`. Some 1 ms a day, 25
- * or 50 days. */
+/* Compute all. Slopes are left out, and count as level, unless `has_slopes`. Some 1 ms a day, 26
+ * or 51 days. */
 void ir_class_days_make(struct ir_class_days *days, const struct db_thermal *t,
                         const struct ir_weather *w, bool has_slopes);
 

@@ -8,6 +8,8 @@
 
 #include "infrared/weather.h"
 
+#include <stdbool.h>
+
 struct ir_surface {
     double emissivity, albedo;
     double conductivity;  /* W/(m K) */
@@ -15,6 +17,7 @@ struct ir_surface {
     double wetness;       /* 0..1 of what free water evaporates */
     double roughness_m;
     double rise_east, rise_north; /* of a slope, metres per metre */
+    bool is_shaded;               /* the beam of the sun never reaches it */
 };
 
 /* Heat that leaves the surface through the air, per kelvin and per hPa; W/m2. */

@@ -3,7 +3,9 @@
 #include "check.h"
 #include "hs/class_table.h"
 #include "hs/rng.h"
+#include "infrared/class_days.h"
 #include "infrared/ground.h"
+#include "infrared/past_suns.h"
 #include "infrared/planck.h"
 #include "infrared/surface.h"
 
@@ -384,6 +386,74 @@ TEST(a_day_gives_back_what_it_took)
         print_message("# %-12s %+.3f W/m2\n", t.items[i].name, sum);
         assert_true(fabs(sum) < 1);
     }
+}
+
+/* Air of the summer day, whose sun something hides from `from_h` to `to_h`. */
+struct hidden_hours {
+    double from_h, to_h;
+};
+
+static struct ir_air partly_hidden(const void *context, double part)
+{
+    const struct hidden_hours *hidden = context;
+    struct ir_air air = ir_weather_at(&summer, 24 * part);
+    if (24 * part > hidden->from_h && 24 * part <= hidden->to_h) {
+        air.beam_w_m2 = 0;
+    }
+    return air;
+}
+
+/* The share of the warmth of past suns says how cold a shadow is, and that it fades. The oracle is
+ * the surface itself with its sun hidden for these hours. In a shadow it is met within a quarter;
+ * what a shadow leaves behind is too cold, by up to 3.5 K in the night. */
+TEST(a_shadow_is_as_cold_as_the_suns_that_it_hid)
+{
+    static const struct {
+        struct hidden_hours hidden;
+        double hour;
+    } cases[] = {{{11, 15}, 15}, {{14, 15}, 15}, {{6, 10}, 15}, {{12, 20}, 22}, {{0, 24}, 13}};
+    struct db_class_table t;
+    read_table(&t);
+    static struct ir_class_days days;
+    const struct db_thermal *street = &t.items[db_class_find(&t, "asphalt")].thermal;
+    const struct ir_surface s = ir_surface_of_class(street);
+    ir_class_days_make(&days, street, &summer, false);
+    for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
+        static double truth[IR_STEPS];
+        struct ir_past_sun suns[IR_PAST_SUNS];
+        struct ir_class_hour hour;
+        struct ir_place place = {.hidden = 0};
+        const double h = cases[i].hour;
+        const struct ir_forcing forcing = {partly_hidden, &cases[i].hidden, day_s};
+        ir_surface_cycle(&s, &forcing, truth);
+        ir_class_hour_of(&hour, &days, h);
+        const double lit = ir_class_hour_at(&hour, &place);
+        double whole = 0;
+        const int count = ir_past_suns(&summer, h, suns);
+        for (int k = 0; k < count; k++) {
+            double at[3];
+            bool is_hidden = false;
+            for (int ago = 0; ago < 24; ago++) { /* which hour this sun is of */
+                const double when = h - ago - 0.5 < 0 ? h - ago + 23.5 : h - ago - 0.5;
+                ir_sun(&summer, when, at);
+                is_hidden |= fabs(at[0] - suns[k].direction[0]) < 1e-9 &&
+                             when > cases[i].hidden.from_h && when <= cases[i].hidden.to_h;
+            }
+            place.hidden += is_hidden ? suns[k].weight : 0;
+            whole += suns[k].weight;
+        }
+        const double ours = ir_class_hour_at(&hour, &place) - lit;
+        const double theirs = ir_day_value(truth, h) - lit;
+        print_message("# hidden %g..%g h: at %g h %.1f K, by the surface %.1f K\n",
+                      cases[i].hidden.from_h, cases[i].hidden.to_h, h, ours, theirs);
+        assert_true(fabs(whole - 1) < 1e-12);
+        const bool is_now = cases[i].hidden.to_h >= h;
+        assert_true(ours < 0 && fabs(ours - theirs) < (is_now ? 0.25 * fabs(theirs) : 3.5));
+    }
+    struct ir_weather night = summer;
+    night.latitude = -80 * pi / 180;
+    struct ir_past_sun suns[IR_PAST_SUNS];
+    assert_int_equal(ir_past_suns(&night, 12, suns), 0);
 }
 
 static double between(struct hs_rng *rng, double low, double high)

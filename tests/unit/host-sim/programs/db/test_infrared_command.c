@@ -3,6 +3,7 @@
 #include "fixture.h"
 #include "gis/raster.h"
 #include "infrared/planck.h"
+#include "infrared/weather.h"
 
 #include "hs/error.h"
 
@@ -48,18 +49,24 @@ static void write_scene(void)
 #define INFRARED "infrared --class-raster %s --classes %s --out %s --air 22 --wind 2 "
 #define PATHS    fixture_path("class.tif"), fixture_path("warm.classes"), fixture_path("ir")
 
+static uint8_t valid[SIDE * SIDE];
+
 /* Both bands of a picture. */
-static void read_picture(const char *name, float *values)
+static void read_all(const char *name, float *values)
 {
-    static uint8_t valid[SIDE * SIDE];
     struct db_raster r;
     assert_int_equal(db_raster_open_one(&r, fixture_path(name)), 0);
     assert_int_equal(r.band_count, 2);
     assert_int_equal(db_raster_read(&r, 0, SIDE, values, valid), 0);
+    db_raster_close(&r);
+}
+
+static void read_picture(const char *name, float *values)
+{
+    read_all(name, values);
     for (int i = 0; i < SIDE * SIDE; i++) {
         assert_int_equal(valid[i], i % SIDE != SIDE - 1);
     }
-    db_raster_close(&r);
 }
 
 struct moments {
@@ -142,6 +149,65 @@ TEST(ground_that_faces_east_is_warmer_in_the_morning_and_colder_in_the_evening)
     }
 }
 
+/* A wall of 10 m from south to north. At 8 h the sun is in the north-east, and the shadow reaches
+ * 10 m times its eastward part over its height to the west; at 16 h to the east. */
+TEST(a_wall_casts_a_shadow_as_long_as_the_sun_is_low)
+{
+    static float class_of[SIDE * SIDE], wall[SIDE * SIDE], values[2 * SIDE * SIDE];
+    static const int middle = SIDE / 2, row = SIDE / 2;
+    write_scene();
+    struct db_grid grid = fixture_grid(SIDE, SIDE);
+    for (int i = 0; i < SIDE * SIDE; i++) {
+        class_of[i] = 2;
+        wall[i] = i % SIDE == middle ? 10 : 0;
+    }
+    fixture_raster("class.tif", &grid, GDT_Byte, class_of, 255);
+    fixture_raster("wall.tif", &grid, GDT_Float32, wall, -1);
+    OSRDestroySpatialReference(grid.crs);
+    const struct ir_weather w = {.latitude = -3.62 * 3.14159265358979 / 180, .day_of_year = 172};
+    for (int k = 0; k < 2; k++) {
+        const double hour = k == 0 ? 8 : 16;
+        double sun[3];
+        ir_sun(&w, hour - 0.5, sun); /* the sun of the last hour */
+        const int reach = (int)(10 * fabs(sun[0]) / sun[2]), way = k == 0 ? -1 : 1;
+        assert_int_equal(fixture_run(NULL, 0, INFRARED "--hours %g --shadows --heights %s --seed 2",
+                                     PATHS, hour, fixture_path("wall.tif")),
+                         0);
+        read_all(k == 0 ? "ir/infrared-0800.tif" : "ir/infrared-1600.tif", values);
+        const float *line = values + row * SIDE;
+        const float near = line[middle + way * 2], edge = line[middle + way * (reach - 2)],
+                    beyond = line[middle + way * (reach + 12)], sunny = line[middle - way * 8];
+        print_message("# %g h: shadow of %d m: %.1f %.1f, beyond %.1f, in the sun %.1f K\n", hour,
+                      reach, (double)near, (double)edge, (double)beyond, (double)sunny);
+        assert_true(near < beyond - 3 && edge < beyond - 3);
+        assert_true(near < sunny - 3 && edge < sunny - 3);
+    }
+}
+
+/* South of the equator the sun of June stands in the north: a wall from west to east has its shadow
+ * on its southern side. */
+TEST(shadows_lie_away_from_the_sun_at_noon)
+{
+    static float class_of[SIDE * SIDE], wall[SIDE * SIDE], values[2 * SIDE * SIDE];
+    write_scene();
+    struct db_grid grid = fixture_grid(SIDE, SIDE);
+    for (int i = 0; i < SIDE * SIDE; i++) {
+        class_of[i] = 2;
+        wall[i] = i / SIDE == SIDE / 2 ? 10 : 0;
+    }
+    fixture_raster("class.tif", &grid, GDT_Byte, class_of, 255);
+    fixture_raster("wall.tif", &grid, GDT_Float32, wall, -1);
+    OSRDestroySpatialReference(grid.crs);
+    assert_int_equal(fixture_run(NULL, 0, INFRARED "--hours 12 --shadows --heights %s", PATHS,
+                                 fixture_path("wall.tif")),
+                     0);
+    read_all("ir/infrared-1200.tif", values);
+    const float *column = values + SIDE / 2;
+    const float north = column[(SIDE / 2 - 2) * SIDE], south = column[(SIDE / 2 + 2) * SIDE];
+    print_message("# north of the wall %.1f K, south %.1f K\n", (double)north, (double)south);
+    assert_true(south < north - 3);
+}
+
 TEST(curves_and_pictures_lie_beside_the_rasters)
 {
     static const char *const names[] = {"ir/infrared.csv", "ir/infrared.png",
@@ -181,6 +247,8 @@ TEST(the_command_says_what_is_wrong)
         {HS_EXIT_USAGE, "--cloud 2", "needs a number within its range"},
         {HS_EXIT_USAGE, "--latitude 91", "needs a number within its range"},
         {HS_EXIT_FAILED, "--terrain nosuch.tif", "cannot be opened"},
+        {HS_EXIT_USAGE, "--shadows", "needs what casts them"},
+        {HS_EXIT_FAILED, "--shadows --heights nosuch.tif", "cannot be opened"},
     };
     write_scene();
     for (size_t i = 0; i < sizeof wrong / sizeof wrong[0]; i++) {
