@@ -10,6 +10,7 @@ enum {
     LENGTH_MORE = 255, /* of those bytes: another one follows */
     MATCH_LEAST = 4,   /* bytes of a match of length 0 */
     OFFSET_BYTES = 2,
+    SHORT = 32,           /* bytes of most literals and matches */
     LITERALS_LAST = 5,    /* bytes that end a block and are always literals */
     MATCH_START_LAST = 12 /* a match begins so many bytes before the end, or earlier */
 };
@@ -40,6 +41,15 @@ static bool read_length(struct lm_lz4 *d, uint32_t *length, uint32_t most)
     return *length <= most;
 }
 
+/* Copy up to SHORT bytes as SHORT, which costs less than asking how many. What is written behind
+ * them is output that is yet to be made. Sixteen at a time: the copy may begin 16 bytes behind
+ * `from`. */
+static void copy_short(uint8_t *to, const uint8_t *from)
+{
+    __builtin_memcpy(to, from, SHORT / 2);
+    __builtin_memcpy(to + SHORT / 2, from + SHORT / 2, SHORT / 2);
+}
+
 /* Move literals down to the output. They may overlap their copy, which never lies behind them. A
  * piece is no longer than the way they go. */
 static void copy_literals(struct lm_lz4 *d, uint32_t length)
@@ -47,8 +57,13 @@ static void copy_literals(struct lm_lz4 *d, uint32_t length)
     const uint8_t *from = d->buffer + d->in;
     uint8_t *to = d->buffer + d->out;
     const uint32_t way = d->in - d->out;
-    for (uint32_t done = 0; way > 0 && done < length; done += way) {
-        memcpy(to + done, from + done, fx_min_u32(way, length - done));
+    if (length <= SHORT && way >= SHORT && d->in_end - d->in >= SHORT &&
+        d->out_end - d->out >= SHORT) {
+        copy_short(to, from);
+    } else {
+        for (uint32_t done = 0; way > 0 && done < length; done += way) {
+            memcpy(to + done, from + done, fx_min_u32(way, length - done));
+        }
     }
     d->in += length;
     d->out += length;
@@ -59,10 +74,18 @@ static void copy_literals(struct lm_lz4 *d, uint32_t length)
 static void copy_match(struct lm_lz4 *d, uint32_t offset, uint32_t length)
 {
     uint8_t *to = d->buffer + d->out;
-    for (uint32_t done = 0; done < length;) {
-        const uint32_t piece = fx_min_u32(offset + done, length - done);
-        memcpy(to + done, to - offset, piece);
-        done += piece;
+    const bool is_short = length <= SHORT && d->out_end - d->out >= SHORT &&
+                          d->in - d->out >= SHORT && offset >= SHORT / 2;
+    if (is_short) {
+        copy_short(to, to - offset);
+    } else if (offset == 1) {
+        memset(to, to[-1], length);
+    } else {
+        for (uint32_t done = 0; done < length;) {
+            const uint32_t piece = fx_min_u32(offset + done, length - done);
+            memcpy(to + done, to - offset, piece);
+            done += piece;
+        }
     }
     d->out += length;
 }
@@ -106,9 +129,12 @@ static int run_sequence(struct lm_lz4 *d)
 
 int lm_lz4_run(struct lm_lz4 *d, uint32_t sequences)
 {
+    /* A copy stays in registers: no byte that is written can be a member of it. */
+    struct lm_lz4 at = *d;
     int status = LM_BUSY;
     for (uint32_t i = 0; i < sequences && status == LM_BUSY; i++) {
-        status = run_sequence(d);
+        status = run_sequence(&at);
     }
+    *d = at;
     return status;
 }

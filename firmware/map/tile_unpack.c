@@ -31,13 +31,19 @@ static void put_right(struct lm_tile *tile, uint32_t row)
     uint8_t strips[4][LM_TILE_POINTS];
     _Static_assert(sizeof strips == sizeof tile->points[0], "a row stays in its place");
     memcpy(strips, points, sizeof strips);
+    /* Apart from the sums, loops of vectors. */
+    uint16_t cell[LM_TILE_POINTS], left[LM_TILE_POINTS];
+    for (int i = 0; i < LM_TILE_POINTS; i++) {
+        const uint16_t folded = (uint16_t)(strips[3][i] << 8 | strips[2][i]);
+        left[i] = (uint16_t)((folded >> 1) ^ (0 - (folded & 1)));
+        cell[i] = (uint16_t)(strips[0][i] << 8 | strips[1][i]);
+    }
+    static const struct lm_tile_point below[LM_TILE_POINTS];
+    const struct lm_tile_point *south = row > 0 ? tile->points[row - 1] : below;
     uint32_t rise = 0;
-    for (uint32_t i = 0; i < LM_TILE_POINTS; i++) {
-        const uint32_t left = (uint32_t)(strips[3][i] << 8 | strips[2][i]);
-        const uint32_t south = row > 0 ? tile->points[row - 1][i].post : 0;
-        rise += (left >> 1) ^ (0u - (left & 1));
-        points[i].cell = (uint16_t)(strips[0][i] << 8 | strips[1][i]);
-        points[i].post = (uint16_t)(south + rise);
+    for (int i = 0; i < LM_TILE_POINTS; i++) {
+        rise += left[i];
+        points[i] = (struct lm_tile_point){cell[i], (uint16_t)(south[i].post + rise)};
     }
 }
 

@@ -8,7 +8,7 @@
 
 const uint32_t fuzz_mutations = 60000;
 
-enum { SLOTS = 24, POLLS = 64 };
+enum { SLOTS = 24, POLLS = 128 };
 
 static void sample(struct lm_tile_cache *cache, struct lm_scan_line *line, struct lm_position from,
                    uint32_t cell_mm)
@@ -22,7 +22,7 @@ static void sample(struct lm_tile_cache *cache, struct lm_scan_line *line, struc
     for (int i = 0; i < 2; i++) {
         lm_ground_path_fit(&path, points, 64);
         lm_scan_line_run(line, cache, level, NULL, &path, 64); /* asks for what is missing */
-        lm_tile_cache_service(cache, (uint64_t)i * 2000000, 64);
+        lm_tile_cache_service(cache, (uint64_t)i * 2000000, POLLS);
     }
     (void)lm_scan_elevation(cache, level, from, 0);
 }

@@ -2,6 +2,7 @@
 
 #include "fx/crc32c.h"
 #include "lm/db.h"
+#include "lm/tile_unpack.h"
 
 #include <string.h>
 
@@ -44,6 +45,53 @@ static void seal_records(uint8_t *records, size_t bytes)
     }
 }
 
+/* A record has the checksum of its tile. What cannot be unpacked is left alone. */
+static void seal_packed(uint8_t *record, uint16_t size)
+{
+    struct lm_tile tile;
+    struct lm_tile_unpack unpack;
+    memcpy(lm_tile_unpack_place(&tile, size), record, (size_t)size * LM_DB_PLACE_BYTES);
+    int status = lm_tile_unpack_begin(&unpack, &tile, size);
+    while (status == LM_BUSY) {
+        status = lm_tile_unpack_run(&unpack);
+    }
+    if (status == LM_OK) {
+        const uint32_t crc = fx_crc32c(0, &tile.lod, LM_TILE_BYTES - sizeof tile.crc);
+        memcpy(record, &crc, sizeof crc);
+    }
+}
+
+/* Where a section of a type lies, if it lies inside the image. */
+static uint8_t *find(uint8_t *image, size_t size, uint64_t type, uint64_t *bytes)
+{
+    for (size_t i = 0; i < SECTIONS_MAX; i++) {
+        const uint8_t *entry = image + 64 + i * SECTION_ENTRY;
+        const uint64_t offset = get(entry + 8, 8);
+        *bytes = get(entry + 16, 8);
+        if (get(entry, 4) == type && offset <= size && *bytes <= size - offset) {
+            return image + offset;
+        }
+    }
+    return NULL;
+}
+
+static void seal_packed_records(uint8_t *image, size_t size)
+{
+    uint64_t directory_bytes, tiles_bytes;
+    const uint8_t *directory = find(image, size, DIRECTORY, &directory_bytes);
+    uint8_t *tiles = find(image, size, TILES, &tiles_bytes);
+    for (size_t i = 0; directory && tiles && i < directory_bytes / ENTRY && i < ENTRIES_MAX; i++) {
+        const uint8_t *entry = directory + ENTRY * i;
+        const uint64_t at = LM_DB_PLACE_BYTES * get(entry, 4);
+        const uint16_t units = (uint16_t)get(entry + 4, 2);
+        const uint64_t bytes = (uint64_t)LM_DB_PLACE_BYTES * units;
+        if (entry[6] == LM_TILE_LZ4 && units > 0 && bytes < LM_TILE_BYTES && at <= tiles_bytes &&
+            bytes <= tiles_bytes - at) {
+            seal_packed(tiles + at, units);
+        }
+    }
+}
+
 static void seal_section(uint8_t *image, size_t size, uint8_t *entry, unsigned parts)
 {
     const uint64_t type = get(entry, 4), offset = get(entry + 8, 8), bytes = get(entry + 16, 8);
@@ -67,6 +115,9 @@ void seal_image(uint8_t *image, size_t size, unsigned parts)
     }
     for (size_t i = 0; i < SECTIONS_MAX; i++) {
         seal_section(image, size, image + 64 + i * SECTION_ENTRY, parts);
+    }
+    if (parts & SEAL_RECORDS) {
+        seal_packed_records(image, size);
     }
     if (parts & SEAL_HEADER) {
         const uint32_t crc = fx_crc32c(0, image, LM_DB_HEADER_BYTES - 4);

@@ -23,6 +23,7 @@ MODES = dict(enumerate(SECTORS + ["SAR patch", "SAR patch finer than the map"]))
 PATCH = len(SECTORS)
 FINER = PATCH + 1
 PATCH_CELLS = 256
+TILE_BYTES = 17472
 
 
 def value(lines, name):
@@ -87,8 +88,32 @@ def print_goals(modes, first_picture_us):
     print(f"  reset to first picture:  {first_picture_us / 1000:6.1f} ms of the guest's time (goal 1,000)")
 
 
+def sum_of(modes, stage):
+    """(calls, instructions, most) of a stage in all modes."""
+    found = [stages[stage] for stages in modes.values() if stage in stages] or [(0, 0, 0)]
+    calls, instructions, most = zip(*found)
+    return sum(calls), sum(instructions), max(most)
+
+
+def tile_costs(modes):
+    """What a tile costs after it was read: (instructions, what). Nothing is unpacked of an image of raw records."""
+    tiles, checking, _ = sum_of(modes, "lm_tile_check")
+    parts, unpacking, most = sum_of(modes, "lm_tile_unpack_run")
+    if not tiles or not parts:
+        return []
+    return [(unpacking / tiles, "unpacking a tile"), (unpacking / tiles / TILE_BYTES, "unpacking a byte of a tile"),
+            (most, "unpacking, worst part"), (checking / tiles, "checking a tile")]
+
+
+def print_tiles(modes):
+    tiles, _, _ = sum_of(modes, "lm_tile_check")
+    print(f"\n{tiles:,} tiles, instructions")
+    for cost, what in tile_costs(modes):
+        print(f"  {what:27}{cost:12,.1f}")
+
+
 def record(modes, first_picture_us):
-    rows = []
+    rows = [(cost, "instructions", what) for cost, what in tile_costs(modes)]
     for mode, stages in sorted(modes.items()):
         if "line" not in stages:
             continue
@@ -122,6 +147,7 @@ def main():
     print_line_budget(modes)
     first_picture_us = value(lines, "first-picture-us")
     print_goals(modes, first_picture_us)
+    print_tiles(modes)
     record(modes, first_picture_us)
     return 0
 

@@ -60,7 +60,7 @@ void lm_lz4_begin(struct lm_lz4 *d, uint8_t *buffer, uint32_t out_bytes, uint32_
  * - LM_OK: the output is complete.
  * - LM_ERR_CORRUPT: this is no block of `out_bytes`. The buffer is unspecified; do not call again.
  *
- * Cost: some 60 instructions a sequence, and its bytes once through memcpy. */
+ * Cost: some 90 instructions a sequence on the A53, of tiles. */
 int lm_lz4_run(struct lm_lz4 *d, uint32_t sequences);
 
 #endif

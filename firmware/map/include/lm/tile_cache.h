@@ -226,7 +226,7 @@ bool lm_tile_cache_read(struct lm_tile_cache *c, struct lm_flash_request *reques
 /* Continue reading, with at most `reads` polls or starts of the flash or parts of the unpacking of
  * a compressed record. Never waits. Tiles that lm_tile_cache_get returned before may be evicted.
  * Cost: the check of a record for each tile that is complete, a pass over the slots for each tile
- * that is begun, and lm_tile_unpack_run for each part, which costs a third of a check. */
+ * that is begun, and lm_tile_unpack_run for each part, which costs half a check. */
 void lm_tile_cache_service(struct lm_tile_cache *c, uint64_t now_us, uint32_t reads);
 
 /* True if no request waits and nothing is being read. */

@@ -34,8 +34,9 @@
 #include "lm/lz4.h"
 
 /* Work of one part: sequences of the block, or rows put right. A record has up to 4,357 sequences
- * and 66 rows, hence up to 86 parts; one of the built-in scene has 14 and 17 parts on average. */
-enum { LM_TILE_UNPACK_SEQUENCES = 64, LM_TILE_UNPACK_ROWS = 4 };
+ * and 66 rows, hence up to 131 parts; one of the built-in scene has 22 and 22 parts on average.
+ * Cost on the A53: about 3,600 and 2,600 instructions a part (docs/zcu102.md). */
+enum { LM_TILE_UNPACK_SEQUENCES = 40, LM_TILE_UNPACK_ROWS = 3 };
 
 /* Record being unpacked. All members are private. */
 struct lm_tile_unpack {
