@@ -188,11 +188,23 @@ static int spread_blocks(struct build_facing *f)
     return 0;
 }
 
+/* Entries of the finest level: only they are surveyed. */
+static uint64_t finest_entries(const struct build_plan *plan)
+{
+    uint64_t entries = 0;
+    for (int i = 0; i < plan->band_count; i++) {
+        const struct lm_band *band = &plan->bands[i];
+        entries += band->lod == 0 ? (uint64_t)band->rows * band->columns : 0;
+    }
+    return entries;
+}
+
 static int survey_bands(struct build_facing *f, const struct lm_classes *classes,
                         const struct resample_cover *cover, const struct build_plan *plan)
 {
     struct hs_progress progress;
-    hs_progress_begin(&progress, "facings", plan->entry_count);
+    hs_progress_begin(&progress, "facings", finest_entries(plan));
+    uint64_t done = 0;
     int result = 0;
     for (int i = 0; i < plan->band_count; i++) {
         const struct lm_band *band = &plan->bands[i];
@@ -202,7 +214,7 @@ static int survey_bands(struct build_facing *f, const struct lm_classes *classes
                 image_frame_of(plan->shift0, band->zone, band->row0 + k / band->columns,
                                (band->column0 + k % band->columns) & round);
             result = survey_tile(f, classes, cover, &frame);
-            hs_progress_update(&progress, band->entry0 + k);
+            hs_progress_update(&progress, ++done);
         }
     }
     hs_progress_end(&progress);

@@ -2,6 +2,7 @@
 
 #include "drv/can_log.h"
 #include "hs/error.h"
+#include "hs/progress.h"
 #include "hs/report.h"
 #include "lm/bus.h"
 #include "lm/canas_report.h"
@@ -9,6 +10,7 @@
 #include <errno.h>
 #include <math.h>
 #include <string.h>
+#include <sys/stat.h>
 
 static const char *const outcome_words[LM_BUS_OUTCOMES] = {
     [LM_BUS_VALUE] = "values",
@@ -250,6 +252,23 @@ static void report(const struct decoder *d, const struct drv_can_log *log)
     hs_report_put("sequence_breaks", d->bus.canas.count.sequence_breaks);
 }
 
+/* 0 when that is not known: of a pipe. */
+static uint64_t bytes_of(FILE *in)
+{
+    struct stat status;
+    return fstat(fileno(in), &status) == 0 && S_ISREG(status.st_mode) ? (uint64_t)status.st_size
+                                                                      : 0;
+}
+
+/* Where a file stands is a system call: not at every frame. */
+static void show_place(struct hs_progress *progress, FILE *in, uint32_t frames)
+{
+    const long place = frames % 1024 == 0 ? ftell(in) : -1;
+    if (place >= 0) {
+        hs_progress_update(progress, (uint64_t)place);
+    }
+}
+
 int bus_decode(FILE *out, FILE *in, const char *path, const struct lm_bus_profile *profile)
 {
     struct decoder d = {.out = out, .path = path};
@@ -260,9 +279,13 @@ int bus_decode(FILE *out, FILE *in, const char *path, const struct lm_bus_profil
     const struct lm_can port = drv_can_log_port(&log);
     struct lm_can_frame frame;
     int status;
+    struct hs_progress progress;
+    hs_progress_begin_beside(&progress, out, "decoding", bytes_of(in));
     while ((status = port.receive(port.ctx, &frame)) == 1) {
         print_frame(&d, &frame);
+        show_place(&progress, in, d.bus.count.frames);
     }
+    hs_progress_end(&progress);
     if (status < 0) {
         return hs_error(path, NULL, "cannot be read: %s", strerror(errno));
     }

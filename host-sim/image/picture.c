@@ -1,6 +1,7 @@
 #include "image/picture.h"
 
 #include "hs/error.h"
+#include "hs/progress.h"
 #include "image/codes.h"
 
 #include <math.h>
@@ -224,6 +225,17 @@ static void read_values(struct look *l, const struct image_view *v, int first, i
     }
 }
 
+static void read_all(struct look *l, const struct image_view *v, float *values)
+{
+    struct hs_progress progress;
+    hs_progress_begin(&progress, image_plane_names[v->plane], (uint64_t)v->height);
+    for (int y = 0; y < v->height; y++) {
+        read_values(l, v, y, 1, values + (size_t)y * (size_t)v->width);
+        hs_progress_update(&progress, (uint64_t)y + 1);
+    }
+    hs_progress_end(&progress);
+}
+
 int image_view_read(const struct image *image, struct image_view *v, int y, int rows, float *values)
 {
     struct look l = {.image = image, .checked = calloc(image->header.entry_count + 1u, 1)};
@@ -310,7 +322,7 @@ int image_view_draw(const struct image *image, struct image_view *v, uint8_t *pi
                      ? 0
                      : hs_error("picture", "choose a smaller --max-size", "out of memory");
     if (result == 0) {
-        read_values(&l, v, 0, v->height, values);
+        read_all(&l, v, values);
         v->damaged_tiles = l.damaged;
         v->has_data = has_data(v, values);
         if (!(v->white > v->black)) {

@@ -14,10 +14,23 @@ void hs_progress_begin(struct hs_progress *p, const char *label, uint64_t total)
     hs_progress_update(p, 0);
 }
 
+void hs_progress_begin_beside(struct hs_progress *p, FILE *out, const char *label, uint64_t total)
+{
+    if (total > 0 && !isatty(fileno(out))) {
+        hs_progress_begin(p, label, total);
+    } else {
+        *p = (struct hs_progress){.label = label, .total = 1};
+    }
+}
+
 void hs_progress_update(struct hs_progress *p, uint64_t done)
 {
-    const int permille = (int)(1000.0 * (double)done / (double)p->total);
-    if (!p->is_terminal || permille == p->shown_permille) {
+    if (!p->is_terminal) {
+        return;
+    }
+    const double part = (double)done / (double)p->total;
+    const int permille = (int)(1000 * (part < 1 ? part : 1));
+    if (permille == p->shown_permille) {
         return;
     }
     p->shown_permille = permille;

@@ -1,5 +1,6 @@
 #include "nav/send.h"
 
+#include "hs/progress.h"
 #include "nav/canas.h"
 
 #include <math.h>
@@ -171,8 +172,12 @@ int nav_send(const struct nav_track *track, const struct nav_send_options *optio
     const int64_t last_us = track->fix[track->count - 1].time_us;
     const int64_t first_us =
         options->from_us > track->fix[0].time_us ? options->from_us : track->fix[0].time_us;
+    const int64_t end_us = options->until_us < last_us ? options->until_us : last_us;
     uint64_t active = 0;
     int failed = 0;
+    struct hs_progress progress;
+    hs_progress_begin_beside(&progress, out, "sending",
+                             end_us > first_us ? (uint64_t)(end_us - first_us) : 0);
     /* Counted from the epoch rather than summed, so that the grid keeps to whole seconds. */
     for (uint64_t n = (uint64_t)ceil((double)first_us / period_us); !failed; n++) {
         const int64_t tick_us = llround((double)n * period_us);
@@ -185,7 +190,9 @@ int nav_send(const struct nav_track *track, const struct nav_send_options *optio
                          : put_weather(&s, (double)(tick_us - first_us) * 1e-6);
             active++;
         }
+        hs_progress_update(&progress, tick_us > first_us ? (uint64_t)(tick_us - first_us) : 0);
     }
+    hs_progress_end(&progress);
     *sent = (struct nav_sent){.frames = s.frames, .active_s = (double)active * period_us * 1e-6};
     return failed;
 }

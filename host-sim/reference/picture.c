@@ -1,5 +1,6 @@
 /* Whole pictures: the stages in their order, line by line. */
 #include "hs/error.h"
+#include "hs/progress.h"
 #include "lm/grain.h"
 #include "reference/reference.h"
 
@@ -107,11 +108,15 @@ int ref_gm_sweep(struct ref_picture *picture, const struct ref_db *db, const str
     }
     struct ref_tables tables;
     ref_tables_set(&tables, params);
+    struct hs_progress progress;
+    hs_progress_begin(&progress, "lines", gm->line_count);
     for (unsigned line = 0; line < gm->line_count; line++) {
+        hs_progress_update(&progress, line);
         picture->start_horizons[line] =
             ref_gm_line(ref_picture_bin(picture, line, 0), db, gm, params, &tables,
                         ref_gm_azimuth_deg(gm, line), line);
     }
+    hs_progress_end(&progress);
     return 0;
 }
 
@@ -287,10 +292,14 @@ int ref_sar_patch(struct ref_picture *picture, const struct ref_db *db, const st
     const struct ref_surface surface = ref_sar_surface(sar);
     struct ref_params laid = *params;
     laid.lean = ref_sar_lean(sar, picture->view.reference_m);
+    struct hs_progress progress;
+    hs_progress_begin(&progress, "lines", picture->line_count);
     for (unsigned line = 0; line < picture->line_count; line++) {
+        hs_progress_update(&progress, line);
         picture->start_horizons[line] = ref_sar_horizon(db, sar, params, line);
         sar_line(picture, db, sar, params, &surface, line);
     }
+    hs_progress_end(&progress);
     rain_on(picture, sar);
     if (make_levels(picture, sar, &laid) != 0) {
         ref_picture_free(picture);

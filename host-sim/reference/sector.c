@@ -1,6 +1,7 @@
 /* A sector in real beam or sharpened: sampled lines, and what the display makes of them.
  * EQUATIONS.md, "Real beam". */
 #include "hs/error.h"
+#include "hs/progress.h"
 #include "lm/grain.h"
 #include "reference/reference.h"
 
@@ -172,7 +173,10 @@ static void draw(struct ref_picture *picture, struct samples *samples, const str
     line.receiver.leak_lines =
         ref_leak_lines(sector->beam_deg, 2 * ground->half_angle_deg / ground->line_count);
     ref_tables_set(&tables, params);
+    struct hs_progress progress;
+    hs_progress_begin(&progress, "lines", ground->line_count);
     for (line.line = 0; line.line < ground->line_count; line.line++) {
+        hs_progress_update(&progress, line.line);
         const double azimuth_deg = ref_gm_azimuth_deg(ground, line.line);
         const struct ref_beam beam = {sector->beam_deg, sector->sample_deg,
                                       ratio_at(sector, azimuth_deg)};
@@ -191,6 +195,7 @@ static void draw(struct ref_picture *picture, struct samples *samples, const str
         line.grain_row += ref_grain_rows(&beam, 2 * ground->half_angle_deg / ground->line_count);
         fill_line(ref_picture_bin(picture, line.line, 0), &line.receiver, level_db, params);
     }
+    hs_progress_end(&progress);
 }
 
 int ref_sector_sweep(struct ref_picture *picture, const struct ref_db *db,

@@ -1,6 +1,7 @@
 #include "erosion.h"
 
 #include "hs/error.h"
+#include "hs/progress.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -135,9 +136,13 @@ static void erode_once(struct erosion *e, double pace, double talus)
 
 void erosion_run(struct erosion *e, int steps, double pace, double talus)
 {
+    struct hs_progress progress;
+    hs_progress_begin(&progress, "eroding", (uint64_t)steps);
     for (int i = 0; i < steps; i++) {
         erosion_route(e);
         erode_once(e, pace, talus);
+        hs_progress_update(&progress, (uint64_t)i + 1);
     }
     erosion_route(e);
+    hs_progress_end(&progress);
 }

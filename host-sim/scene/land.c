@@ -4,6 +4,7 @@
 #include "noise.h"
 
 #include "hs/error.h"
+#include "hs/progress.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -394,7 +395,10 @@ static void fill_grid(struct land *l, const struct erosion *e)
 {
     const struct frame airfield = land_airfield();
     l->airfield_level_m = fmax(6, smooth_height(e, airfield.origin));
+    struct hs_progress progress;
+    hs_progress_begin(&progress, "laying the land", (uint64_t)l->posts);
     for (int y = 0; y < l->posts; y++) {
+        hs_progress_update(&progress, (uint64_t)y);
         for (int x = 0; x < l->posts; x++) {
             const size_t i = (size_t)y * (size_t)l->posts + (size_t)x;
             const struct point p =
@@ -407,6 +411,7 @@ static void fill_grid(struct land *l, const struct erosion *e)
             l->wood[i] = (float)wood_at(l, p, height);
         }
     }
+    hs_progress_end(&progress);
 }
 
 /* Slope, and the sun's light on it, from the heights of the neighbours. */
