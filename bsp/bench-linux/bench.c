@@ -9,17 +9,20 @@
 static int acquire(void *ctx, struct lm_surface *surface)
 {
     const struct bench *b = ctx;
-    *surface = (struct lm_surface){.pixels = b->glass,
+    *surface = (struct lm_surface){.pixels = b->buffer[(b->pictures + 1) % BENCH_BUFFERS],
                                    .stride_px = b->display.width_px,
                                    .width_px = b->display.width_px,
-                                   .height_px = b->display.height_px};
+                                   .height_px = b->display.height_px,
+                                   .age = b->pictures >= BENCH_BUFFERS ? BENCH_BUFFERS : 0};
     return LM_OK;
 }
 
-static int present(void *ctx)
+static int present(void *ctx, const struct lm_damage *changed)
 {
+    (void)changed;
     struct bench *b = ctx;
     b->pictures++;
+    b->glass = b->buffer[b->pictures % BENCH_BUFFERS];
     return LM_OK;
 }
 
@@ -29,9 +32,14 @@ static int lend_memory(struct bench *b)
     b->board.tile_pool_bytes = BENCH_TILE_SLOTS * sizeof(struct lm_tile);
     b->board.tile_pool = malloc(b->board.tile_pool_bytes);
     b->board.plane = malloc(pixels);
-    b->glass = calloc(pixels, sizeof *b->glass);
+    bool has_buffers = true;
+    for (uint32_t i = 0; i < BENCH_BUFFERS; i++) {
+        b->buffer[i] = calloc(pixels, sizeof *b->buffer[i]);
+        has_buffers = has_buffers && b->buffer[i];
+    }
+    b->glass = b->buffer[0];
     b->unit = malloc(sizeof *b->unit);
-    return b->board.tile_pool && b->board.plane && b->glass && b->unit ? 0 : -1;
+    return b->board.tile_pool && b->board.plane && has_buffers && b->unit ? 0 : -1;
 }
 
 /* Why the unit refuses to start, into b->error. */
@@ -74,6 +82,7 @@ int bench_open(struct bench *b, const struct bench_scene *scene, const struct be
                                  .hardware_revision = 1,
                                  .controls = controls,
                                  .display = &b->display,
+                                 .glass_step_px = LM_GLASS_STEP_PX,
                                  .noise_seed = noise_seed,
                                  .options = glass->options,
                                  .flash_poll_limit = 1000};
@@ -92,7 +101,9 @@ void bench_close(struct bench *b)
     drv_flash_file_close(&b->flash);
     free(b->board.tile_pool);
     free(b->board.plane);
-    free(b->glass);
+    for (uint32_t i = 0; i < BENCH_BUFFERS; i++) {
+        free(b->buffer[i]);
+    }
     free(b->unit);
     memset(b, 0, sizeof *b);
 }

@@ -6,13 +6,15 @@
 #include "drv/flash_file.h"
 #include "lm/unit.h"
 
-enum { BENCH_TILE_SLOTS = 384 };
+/* As many buffers as the ZCU102 has, so that the same frames are shown. */
+enum { BENCH_TILE_SLOTS = 384, BENCH_BUFFERS = 2 };
 
 struct bench {
     struct drv_flash_file flash;
     struct lm_display display;
-    uint32_t *glass;   /* owned: the last frame presented, width_px * height_px, 0x00RRGGBB */
-    uint32_t pictures; /* frames presented so far */
+    uint32_t *buffer[BENCH_BUFFERS]; /* owned: width_px * height_px each, 0x00RRGGBB */
+    uint32_t *glass;                 /* the one of the last frame presented */
+    uint32_t pictures;               /* frames presented so far */
     struct lm_board board;
     struct lm_unit *unit; /* owned */
     char error[160];      /* why bench_open failed */

@@ -102,8 +102,9 @@ static int acquire(void *ctx, struct lm_surface *surface)
     return LM_OK;
 }
 
-static int present(void *ctx)
+static int present(void *ctx, const struct lm_damage *changed)
 {
+    (void)changed;
     struct glass *g = ctx;
     g->count.pictures++;
     if (g->kind == GLASS_DRM && g->drm.state != DRV_DRM_DARK) {

@@ -30,14 +30,22 @@ static uint64_t now_us(void)
 static int acquire(void *ctx, struct lm_surface *surface)
 {
     (void)ctx;
-    *surface = (struct lm_surface){pixels, WIDTH_PX, WIDTH_PX, HEIGHT_PX};
+    /* One buffer, which holds the picture shown last, once there was one. */
+    static uint8_t age;
+    *surface = (struct lm_surface){.pixels = pixels,
+                                   .stride_px = WIDTH_PX,
+                                   .width_px = WIDTH_PX,
+                                   .height_px = HEIGHT_PX,
+                                   .age = age};
+    age = 1;
     return LM_OK;
 }
 
-/* Yours puts the pixels on the glass. */
-static int present(void *ctx)
+/* Yours puts the pixels on the glass; those of *changed suffice. */
+static int present(void *ctx, const struct lm_damage *changed)
 {
     (void)ctx;
+    (void)changed;
     return LM_OK;
 }
 
@@ -51,6 +59,7 @@ int main(void)
                                    .tile_pool = tile_pool,
                                    .tile_pool_bytes = sizeof tile_pool,
                                    .plane = plane,
+                                   .glass_step_px = LM_GLASS_STEP_PX,
                                    .flash_poll_limit = 1000000};
     if (lm_unit_init(&unit, &board) != LM_OK) {
         return 1;

@@ -7,7 +7,6 @@
 
 static ZCU102_BULK struct lm_tile tile_pool[ZCU102_TILES];
 static ZCU102_BULK uint8_t plane[ZCU102_WIDTH_PX * ZCU102_HEIGHT_PX];
-static ZCU102_BULK uint32_t drawn[ZCU102_WIDTH_PX * ZCU102_HEIGHT_PX];
 static ZCU102_SHARED uint32_t scanned[DRV_DISPLAY_BUFFERS][ZCU102_WIDTH_PX * ZCU102_HEIGHT_PX];
 static ZCU102_SHARED struct drv_display_scan scans[DRV_DISPLAY_BUFFERS];
 static ZCU102_SHARED uint8_t flash_piece[DRV_FLASH_PIECE];
@@ -97,7 +96,6 @@ static void open_devices(struct zcu102 *z)
                                                .clock = &z->timer,
                                                .width_px = ZCU102_WIDTH_PX,
                                                .height_px = ZCU102_HEIGHT_PX,
-                                               .drawn = drawn,
                                                .scans = scans};
     complain_if(z, drv_display_open(&z->display, &display), "display");
     drv_watchdog_start(&z->watchdog, device(SWDT_BASE), SWDT_CLOCK_HZ, ZCU102_WATCHDOG_MS);
@@ -116,6 +114,7 @@ void zcu102_open(struct zcu102 *z)
                                 .tile_pool = tile_pool,
                                 .tile_pool_bytes = sizeof tile_pool,
                                 .plane = plane,
+                                .glass_step_px = LM_GLASS_STEP_PX,
                                 .flash_poll_limit = 1000000};
     if (z->last_restart.cause != ZCU102_POWER_ON) {
         z->lent.restart = zcu102_cause_words(z->last_restart.cause);

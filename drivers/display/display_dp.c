@@ -66,18 +66,6 @@ enum {
     BYTES_A_PIXEL = 3
 };
 
-/* Once a picture: red is wanted in the highest byte and stands in the second. Sides of a picture
- * are multiples of 4, so that their product is one of GROUP_PX. */
-static void convert(uint32_t *restrict to, const uint32_t *restrict from, uint32_t pixels)
-{
-    enum { GROUP_PX = 16 };
-    for (const uint32_t *const end = from + pixels; from < end; from += GROUP_PX, to += GROUP_PX) {
-        for (size_t k = 0; k < GROUP_PX; k++) {
-            to[k] = from[k] << 8;
-        }
-    }
-}
-
 static uint32_t pixel_count(const struct drv_display *d)
 {
     return (uint32_t)d->port.width_px * d->port.height_px;
@@ -88,26 +76,35 @@ static uint32_t bus_address(const volatile void *p)
     return (uint32_t)(uintptr_t)p;
 }
 
+/* The buffer that is not shown. */
+static const struct drv_display_scan *next_scan(const struct drv_display *d)
+{
+    return &d->scans[(d->presented + 1) % DRV_DISPLAY_BUFFERS];
+}
+
+/* Red is wanted in the highest byte of a pixel. */
 static int acquire(void *ctx, struct lm_surface *surface)
 {
     const struct drv_display *d = ctx;
-    *surface = (struct lm_surface){.pixels = d->drawn,
-                                   .stride_px = d->port.width_px,
-                                   .width_px = d->port.width_px,
-                                   .height_px = d->port.height_px};
+    *surface =
+        (struct lm_surface){.pixels = next_scan(d)->pixels,
+                            .stride_px = d->port.width_px,
+                            .width_px = d->port.width_px,
+                            .height_px = d->port.height_px,
+                            .shift = DRV_DISPLAY_SHIFT,
+                            .age = d->presented >= DRV_DISPLAY_BUFFERS ? DRV_DISPLAY_BUFFERS : 0};
     return LM_OK;
 }
 
-static int present(void *ctx)
+static int present(void *ctx, const struct lm_damage *changed)
 {
     struct drv_display *d = ctx;
-    const struct drv_display_scan *scan = &d->scans[d->next];
-    convert(scan->pixels, d->drawn, pixel_count(d));
+    (void)changed;
     /* A write to a device is not overtaken by what was written to memory before it. */
     __atomic_thread_fence(__ATOMIC_SEQ_CST);
-    drv_write(d->dma, DPDMA_CH3_DSCR_STRT_ADDR, bus_address(&scan->descriptor));
+    drv_write(d->dma, DPDMA_CH3_DSCR_STRT_ADDR, bus_address(&next_scan(d)->descriptor));
     drv_write(d->dma, DPDMA_GBL, GBL_RETRIGGER_CH3);
-    d->next = (d->next + 1) % DRV_DISPLAY_BUFFERS;
+    d->presented++;
     return LM_OK;
 }
 
@@ -190,9 +187,7 @@ int drv_display_open(struct drv_display *d, const struct drv_display_config *con
                                        .now_us = config->now_us,
                                        .clock = config->clock,
                                        .board_lanes = config->lanes},
-                              .drawn = config->drawn,
                               .scans = config->scans,
-                              .next = 1,
                               .port = {.ctx = d,
                                        .width_px = config->width_px,
                                        .height_px = config->height_px,

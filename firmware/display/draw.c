@@ -5,9 +5,15 @@
 
 #include "fx/sat.h"
 #include "fx/trig.h"
+#include "lm/draw_list.h"
 #include "lm/font.h"
 
-enum { ARC_CHORDS = 48 };
+enum {
+    SHORT_PX = 8,
+    /* A row of a character: its dots, and the leftmost of them. */
+    DOTS = (1 << LM_FONT_WIDTH) - 1,
+    LEFTMOST = 1 << (LM_FONT_WIDTH - 1)
+};
 
 struct lm_pen lm_pen_for(const struct lm_surface *surface, uint32_t colour)
 {
@@ -21,16 +27,53 @@ struct lm_pen lm_pen_for(const struct lm_surface *surface, uint32_t colour)
                            .line_px = dot_px > 2 ? 2 : 1};
 }
 
+/* Fill the columns of a rectangle one by one: upright lines, whose rows are too short for a loop.
+ */
+static void fill_columns(const struct lm_pen *pen, const struct lm_rectangle *r)
+{
+    const size_t stride = pen->surface.stride_px;
+    const uint32_t colour = pen->colour;
+    for (int32_t column = r->left; column < r->right; column++) {
+        uint32_t *out = pen->surface.pixels + (size_t)r->top * stride + column;
+        for (int32_t row = r->top; row < r->bottom; row++, out += stride) {
+            *out = colour;
+        }
+    }
+}
+
+/* Fill a rectangle that lies within the pen's clip. */
+static void fill(const struct lm_pen *pen, const struct lm_rectangle *r)
+{
+    if (r->right - r->left < fx_min_i32(r->bottom - r->top, SHORT_PX)) {
+        fill_columns(pen, r);
+        return;
+    }
+    const size_t stride = pen->surface.stride_px;
+    const uint32_t colour = pen->colour; /* a pixel might alias the pen's */
+    uint32_t *out = pen->surface.pixels + (size_t)r->top * stride;
+    for (int32_t row = r->top; row < r->bottom; row++, out += stride) {
+        for (int32_t column = r->left; column < r->right; column++) {
+            out[column] = colour;
+        }
+    }
+}
+
 void lm_draw_box(const struct lm_pen *pen, int32_t x, int32_t y, int32_t width, int32_t height)
 {
-    const struct lm_clip *clip = &pen->clip;
-    const int32_t right = fx_min_i32(x + width, clip->right);
-    const int32_t bottom = fx_min_i32(y + height, clip->bottom);
-    const int32_t left = fx_max_i32(x, clip->left);
-    for (int32_t row = fx_max_i32(y, clip->top); row < bottom; row++) {
-        uint32_t *out = pen->surface.pixels + (uint32_t)row * pen->surface.stride_px;
-        for (int32_t column = left; column < right; column++) {
-            out[column] = pen->colour;
+    const struct lm_rectangle *clip = &pen->clip;
+    const struct lm_rectangle box = {.left = fx_max_i32(x, clip->left),
+                                     .top = fx_max_i32(y, clip->top),
+                                     .right = fx_min_i32(x + width, clip->right),
+                                     .bottom = fx_min_i32(y + height, clip->bottom)};
+    if (pen->list) {
+        lm_draw_list_box(pen->list, pen, &box);
+    } else if (!pen->within) {
+        fill(pen, &box);
+    } else {
+        struct lm_rectangle part;
+        struct lm_damage_walk walk = lm_damage_walk(&box);
+        while (lm_damage_next(pen->within, &walk, &part)) {
+            fill(pen, &part);
         }
     }
 }
@@ -43,9 +86,29 @@ struct dots {
 /* True if a dot of the pen's line width at p is within the clip. */
 static bool is_in_clip(const struct lm_pen *pen, struct lm_point p)
 {
-    const struct lm_clip *clip = &pen->clip;
+    const struct lm_rectangle *clip = &pen->clip;
     return p.x >= clip->left && p.x <= clip->right - pen->line_px && p.y >= clip->top &&
            p.y <= clip->bottom - pen->line_px;
+}
+
+/* Draw those pixels of a dot that the pen may touch. Most dots of a long line lie in bands without
+ * any. */
+static void draw_dot_within(const struct lm_pen *pen, uint32_t x, uint32_t y)
+{
+    const uint32_t dot = (uint32_t)pen->line_px, last = y + dot - 1;
+    const uint64_t *const band = pen->within->band;
+    if ((band[y / LM_BLOCK_HEIGHT_PX] | band[last / LM_BLOCK_HEIGHT_PX]) == 0) {
+        return;
+    }
+    for (uint32_t row = y; row <= last; row++) {
+        uint32_t *const out = pen->surface.pixels + (size_t)row * pen->surface.stride_px;
+        const uint64_t blocks = band[row / LM_BLOCK_HEIGHT_PX];
+        for (uint32_t column = x; column < x + dot; column++) {
+            if (blocks >> column / LM_BLOCK_WIDTH_PX & 1) {
+                out[column] = pen->colour;
+            }
+        }
+    }
 }
 
 /* Draw dots of one pixel, or two by two, that are all within the clip. Most lines consist of these,
@@ -56,6 +119,10 @@ static void draw_dots_inside(const struct lm_pen *pen, struct dots d)
     const uint32_t colour = pen->colour;
     for (; d.count > 0; d.count--, d.x += d.step_x, d.y += d.step_y) {
         uint32_t *const out = pen->surface.pixels + (size_t)(d.y >> 16) * stride + (d.x >> 16);
+        if (pen->within) {
+            draw_dot_within(pen, (uint32_t)d.x >> 16, (uint32_t)d.y >> 16);
+            continue;
+        }
         out[0] = colour;
         if (pen->line_px == 2) {
             out[1] = out[stride] = out[stride + 1] = colour;
@@ -71,6 +138,10 @@ void lm_draw_line(const struct lm_pen *pen, struct lm_point from, struct lm_poin
     if (dx == 0 || dy == 0) {
         lm_draw_box(pen, fx_min_i32(from.x, to.x), fx_min_i32(from.y, to.y),
                     dx == 0 ? pen->line_px : wide + 1, dy == 0 ? pen->line_px : high + 1);
+        return;
+    }
+    if (pen->list) {
+        lm_draw_list_line(pen->list, pen, from, to);
         return;
     }
     /* |dx| and |dy| are below 2^14 (LM_DRAW_FAR), so the products stay below 2^30. */
@@ -91,14 +162,31 @@ struct lm_point lm_ray_end(struct lm_spot from, fx_bam_t azimuth, int32_t length
                              (from.y_px_q8 - (length * fx_cos_q15(azimuth) >> 7)) >> 8};
 }
 
-void lm_draw_arc(const struct lm_pen *pen, struct lm_spot centre, int32_t radius, fx_bam_t left,
-                 fx_bam_t span)
+struct lm_point lm_arc_end(const struct lm_arc *arc, uint32_t chord)
 {
-    struct lm_point from = lm_ray_end(centre, left, radius);
-    for (uint32_t i = 1; i <= ARC_CHORDS; i++) {
-        const fx_bam_t turned = (fx_bam_t)((uint64_t)span * i / ARC_CHORDS);
-        const struct lm_point to = lm_ray_end(centre, left + turned, radius);
-        lm_draw_line(pen, from, to);
+    const fx_bam_t turned = (fx_bam_t)((uint64_t)arc->span * chord / LM_ARC_CHORDS);
+    return lm_ray_end(arc->centre, arc->left + turned, arc->radius);
+}
+
+/* True if the pen may touch a line. */
+static bool may_touch(const struct lm_pen *pen, struct lm_point from, struct lm_point to)
+{
+    const struct lm_rectangle around = lm_line_bounds(pen, from, to);
+    return !pen->within || lm_damage_meets(pen->within, &around);
+}
+
+void lm_draw_arc(const struct lm_pen *pen, const struct lm_arc *arc)
+{
+    if (pen->list) {
+        lm_draw_list_arc(pen->list, pen, arc);
+        return;
+    }
+    struct lm_point from = lm_arc_end(arc, 0);
+    for (uint32_t chord = 1; chord <= LM_ARC_CHORDS; chord++) {
+        const struct lm_point to = lm_arc_end(arc, chord);
+        if (may_touch(pen, from, to)) {
+            lm_draw_line(pen, from, to);
+        }
         from = to;
     }
 }
@@ -118,12 +206,54 @@ static void draw_dots(const struct lm_pen *pen, int32_t x, int32_t y, uint8_t ro
     }
 }
 
+/* Draw a character that lies within the clip, dot by dot. */
+static void draw_glyph_inside(const struct lm_pen *pen, int32_t x, int32_t y, const uint8_t *rows)
+{
+    const size_t dot = (size_t)pen->dot_px, stride = pen->surface.stride_px;
+    const uint32_t colour = pen->colour;
+    uint32_t *out = pen->surface.pixels + (size_t)y * stride + (size_t)x;
+    for (int32_t row = 0; row < LM_FONT_HEIGHT; row++) {
+        for (size_t high = 0; high < dot; high++, out += stride) {
+            uint32_t *pixel = out;
+            for (uint32_t left = rows[row]; left != 0; left = left << 1 & DOTS, pixel += dot) {
+                for (size_t wide = 0; left & LEFTMOST && wide < dot; wide++) {
+                    pixel[wide] = colour;
+                }
+            }
+        }
+    }
+}
+
+static void draw_glyph(const struct lm_pen *pen, int32_t x, int32_t y, const uint8_t *rows)
+{
+    const struct lm_rectangle *const clip = &pen->clip;
+    const bool is_inside = x >= clip->left && x + LM_FONT_WIDTH * pen->dot_px <= clip->right &&
+                           y >= clip->top && y + LM_FONT_HEIGHT * pen->dot_px <= clip->bottom;
+    if (is_inside && !pen->within) {
+        draw_glyph_inside(pen, x, y, rows);
+        return;
+    }
+    for (int32_t row = 0; row < LM_FONT_HEIGHT; row++, y += pen->dot_px) {
+        if (y < clip->bottom && y + pen->dot_px > clip->top) {
+            draw_dots(pen, x, y, rows[row]);
+        }
+    }
+}
+
 void lm_draw_text(const struct lm_pen *pen, int32_t x, int32_t y, const char *words)
 {
+    if (pen->list) {
+        lm_draw_list_text(pen->list, pen, (struct lm_point){x, y}, words);
+    } else {
+        lm_draw_glyphs(pen, x, y, words);
+    }
+}
+
+void lm_draw_glyphs(const struct lm_pen *pen, int32_t x, int32_t y, const char *words)
+{
     for (; *words; words++, x += lm_column_px(pen)) {
-        const uint8_t *rows = lm_font_glyph(*words);
-        for (int32_t row = 0; row < LM_FONT_HEIGHT; row++) {
-            draw_dots(pen, x, y + row * pen->dot_px, rows[row]);
+        if (x < pen->clip.right && x + lm_column_px(pen) > pen->clip.left) {
+            draw_glyph(pen, x, y, lm_font_glyph(*words));
         }
     }
 }

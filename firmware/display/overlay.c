@@ -5,50 +5,9 @@
 #include "lm/font.h"
 #include "overlay_internal.h"
 
-enum { BLACK_PX = 32, LIT_PX = 16 };
-
-static bool is_black(const uint8_t grey[BLACK_PX])
-{
-    return (fx_load_u64(grey) | fx_load_u64(grey + 8) | fx_load_u64(grey + 16) |
-            fx_load_u64(grey + 24)) == 0;
-}
-
-/* One table look-up a pixel, except in runs of black: more than half of the glass is beside the
- * sector or patch. `restrict` tells the compiler that table and picture do not overlap. */
-static void compose_row(uint32_t *restrict out, const uint8_t *restrict grey,
-                        const uint32_t *restrict colours, uint32_t pixels)
-{
-    const uint32_t black = colours[0];
-    const uint32_t *const end = out + pixels;
-    while (end - out >= BLACK_PX) {
-        if (is_black(grey)) {
-            for (size_t k = 0; k < BLACK_PX; k++) {
-                out[k] = black;
-            }
-            out += BLACK_PX, grey += BLACK_PX;
-        } else {
-            for (size_t k = 0; k < LIT_PX; k++) {
-                out[k] = colours[grey[k]];
-            }
-            out += LIT_PX, grey += LIT_PX;
-        }
-    }
-    while (out < end) {
-        *out++ = colours[*grey++];
-    }
-}
-
-void lm_overlay_picture(const struct lm_glass *g, const struct lm_plane *plane)
-{
-    for (uint32_t y = 0; y < g->surface.height_px; y++) {
-        compose_row(g->surface.pixels + y * g->surface.stride_px,
-                    plane->pixels + y * plane->width_px, g->palette->picture, g->surface.width_px);
-    }
-}
-
 void lm_overlay_blank(const struct lm_glass *g)
 {
-    const struct lm_pen pen = lm_pen_for(&g->surface, g->palette->ink);
+    const struct lm_pen pen = lm_glass_pen(g, g->palette->ink);
     lm_draw_box(&pen, 0, 0, g->surface.width_px, g->surface.height_px);
 }
 
@@ -142,7 +101,7 @@ const char *lm_flag_word(uint32_t number)
 
 static void draw_warning(const struct lm_glass *g, int32_t row, const char *words)
 {
-    const struct lm_pen pen = lm_pen_for(&g->surface, g->palette->warning);
+    const struct lm_pen pen = lm_glass_pen(g, g->palette->warning);
     const int32_t dot = pen.dot_px, width = lm_text_width(&pen, words);
     const int32_t x = g->frame->left_px + (g->frame->width_px - width) / 2;
     const int32_t first = fx_max_i32(g->frame->top_px, LM_BELOW_TOP_ROW_DOTS * dot) + 3 * dot;

@@ -9,10 +9,18 @@
  * row. On some glasses the row reaches into the frame by a dot or two. */
 enum { LM_TOP_ROW_DOTS = 20, LM_BELOW_TOP_ROW_DOTS = LM_TOP_ROW_DOTS + 9 };
 
+/* A pen for all of the glass. */
+static inline struct lm_pen lm_glass_pen(const struct lm_glass *g, uint32_t colour)
+{
+    struct lm_pen pen = lm_pen_for(&g->surface, colour);
+    pen.list = g->list;
+    return pen;
+}
+
 /* The pen of symbols and text. */
 static inline struct lm_pen lm_symbol_pen(const struct lm_glass *g)
 {
-    return lm_pen_for(&g->surface, g->palette->symbol);
+    return lm_glass_pen(g, g->palette->symbol);
 }
 
 /* Write text on a ground of colour `ground`, which makes it legible over a bright picture. The

@@ -18,8 +18,24 @@ struct lm_frame lm_frame_of_display(uint16_t width_px, uint16_t height_px)
                              .height_px = (uint16_t)(height_px * 168u / 200u - top)};
 }
 
+/* Mark a part of the plane in its damage. */
+static void mark_part(const struct lm_plane *plane, const struct lm_rectangle *r)
+{
+    if (plane->damage) {
+        lm_damage_mark(plane->damage, r);
+    }
+}
+
+static void mark_frame(const struct lm_plane *plane, const struct lm_frame *f)
+{
+    const struct lm_rectangle r = {f->left_px, f->top_px, f->left_px + f->width_px,
+                                   f->top_px + f->height_px};
+    mark_part(plane, &r);
+}
+
 void lm_plane_clear(const struct lm_plane *plane, const struct lm_frame *frame)
 {
+    mark_frame(plane, frame);
     for (uint32_t y = frame->top_px; y < (uint32_t)frame->top_px + frame->height_px; y++) {
         memset(plane->pixels + y * plane->width_px + frame->left_px, 0, frame->width_px);
     }
@@ -211,6 +227,28 @@ static inline struct wedge paint_rows(struct wedge w, int32_t rows, struct asked
     return w;
 }
 
+/* Mark the rows of a wedge in a plane's damage, band by band. Its edges are straight, so they are
+ * farthest out in the first or the last row of a band. `left` and `right` are at the first row. */
+static void mark_wedge(const struct lm_plane *plane, const struct lm_ppi *ppi, struct edge left,
+                       struct edge right, const struct rows *rows, const struct columns *columns)
+{
+    const int32_t first = ppi->apex_x_px + columns->first, end = ppi->apex_x_px + columns->end;
+    for (int32_t row = rows->first, more; row < rows->end; row += more) {
+        const int32_t y = ppi->apex_y_px - 1 - row;
+        more = fx_min_i32(y % LM_BLOCK_HEIGHT_PX + 1, rows->end - row);
+        const struct edge l = left, r = right;
+        skip_rows(&left, more - 1);
+        skip_rows(&right, more - 1);
+        const int32_t from = (int32_t)((l.x_q17 < left.x_q17 ? l.x_q17 : left.x_q17) >> 17);
+        const int32_t to = (int32_t)((r.x_q17 > right.x_q17 ? r.x_q17 : right.x_q17) >> 17);
+        lm_damage_mark_band(plane->damage, (uint32_t)y / LM_BLOCK_HEIGHT_PX,
+                            fx_max_i32(ppi->apex_x_px + from, first),
+                            fx_min_i32(ppi->apex_x_px + to, end));
+        skip_rows(&left, 1);
+        skip_rows(&right, 1);
+    }
+}
+
 void lm_scan_conv_sector(const struct lm_plane *plane, const struct lm_ppi *ppi, fx_bam_t left,
                          fx_bam_t right, const uint8_t *grey, uint32_t cells)
 {
@@ -228,6 +266,9 @@ void lm_scan_conv_sector(const struct lm_plane *plane, const struct lm_ppi *ppi,
     }
     skip_rows(&w.left, rows.first);
     skip_rows(&w.right, rows.first);
+    if (plane->damage) {
+        mark_wedge(plane, ppi, w.left, w.right, &rows, &columns);
+    }
     w.apex =
         plane->pixels + ppi->apex_x_px + (ptrdiff_t)(ppi->apex_y_px - 1 - rows.first) * w.width_px;
     w.range_q33 = (2 * rows.first + 1) * w.along.up_q32 + w.along.right_q32 -
@@ -260,6 +301,7 @@ void lm_plane_keep_wedge(const struct lm_plane *plane, const struct lm_ppi *ppi,
     const int32_t top = ppi->apex_y_px - clip->top_px; /* rows from the apex to the clip's top */
     const int32_t bottom = top - clip->height_px;
     struct edge left_edge = edge_at(left), right_edge = edge_at(right);
+    mark_frame(plane, clip);
     skip_rows(&left_edge, fx_max_i32(bottom, 0));
     skip_rows(&right_edge, fx_max_i32(bottom, 0));
     for (int32_t row = bottom; row < top; row++) {
@@ -310,6 +352,7 @@ void lm_plane_shift(const struct lm_plane *plane, const struct lm_frame *frame, 
 {
     const int32_t height = frame->height_px;
     uint8_t *top = plane->pixels + frame->top_px * plane->width_px + frame->left_px;
+    mark_frame(plane, frame);
     /* In this order no row is overwritten before it is read. */
     for (int32_t n = 0; n < height; n++) {
         const int32_t to = down_px > 0 ? height - 1 - n : n, from = to - down_px;
@@ -524,6 +567,23 @@ static void fill(const struct lm_patch_painter *p, uint32_t first, uint32_t rows
     }
 }
 
+/* Mark what a line has painted of some rows, which went on at column `from`. Rows lie along a ray,
+ * so the first and the last go farthest, but for rounding. Up to three pixels more of a row are
+ * painted than it goes on by. */
+static void mark_strip(const struct lm_patch_painter *p, const struct lm_plane *plane,
+                       uint32_t first, uint32_t rows, uint32_t from, bool is_last)
+{
+    const uint32_t last = first + rows - 1;
+    const int32_t bottom = p->square.top_px + p->square.height_px - (int32_t)first;
+    const int32_t right = p->square.left_px + p->square.width_px;
+    const int32_t to = (int32_t)fx_max_u32(p->column_px[first], p->column_px[last]);
+    const struct lm_rectangle part = {.left = (int32_t)from - 1,
+                                      .top = bottom - (int32_t)rows,
+                                      .right = is_last ? right : to + 5,
+                                      .bottom = bottom};
+    mark_part(plane, &part);
+}
+
 void lm_scan_conv_patch(struct lm_patch_painter *p, const struct lm_plane *plane, uint32_t line,
                         const uint8_t *grey)
 {
@@ -536,6 +596,7 @@ void lm_scan_conv_patch(struct lm_patch_painter *p, const struct lm_plane *plane
     }
     for (uint32_t first = 0; first < all; first += ROWS_AT_ONCE, row += ROWS_AT_ONCE * up) {
         const uint32_t rows = fx_min_u32(all - first, ROWS_AT_ONCE);
+        const uint32_t from = fx_min_u32(p->column_px[first], p->column_px[first + rows - 1]);
         set_greys(p, first, grey, &s);
         if (line == 0) {
             memcpy(p->grey + first, s.grey, sizeof s.grey);
@@ -551,5 +612,6 @@ void lm_scan_conv_patch(struct lm_patch_painter *p, const struct lm_plane *plane
         if (line == p->lines - 1) {
             fill(p, first, rows, row, up);
         }
+        mark_strip(p, plane, first, rows, from, line == p->lines - 1);
     }
 }

@@ -23,8 +23,8 @@ static struct lm_pen picture_pen(const struct lm_glass *g)
 {
     const struct lm_frame *f = g->frame;
     struct lm_pen pen = lm_symbol_pen(g);
-    pen.clip =
-        (struct lm_clip){f->left_px, f->top_px, f->left_px + f->width_px, f->top_px + f->height_px};
+    pen.clip = (struct lm_rectangle){f->left_px, f->top_px, f->left_px + f->width_px,
+                                     f->top_px + f->height_px};
     return pen;
 }
 
@@ -50,7 +50,7 @@ static void draw_sector(const struct lm_glass *g, const struct lm_symbols *s)
     const fx_bam_t half = s->azimuth_half;
     const int32_t first = s->range_nm > 10 ? 1 : 2;
     for (int32_t quarter = first; quarter <= 4 - first; quarter++) {
-        lm_draw_arc(&pen, apex, radius * quarter / 4, 0u - half, 2 * half);
+        lm_draw_arc(&pen, &(struct lm_arc){apex, radius * quarter / 4, 0u - half, 2 * half});
     }
     for (int32_t side = -1; s->options.has_borders && side <= 1; side += 2) {
         const fx_bam_t edge = (fx_bam_t)side * half;
@@ -223,8 +223,8 @@ static void draw_ownship(const struct lm_glass *g, const struct lm_symbols *s)
     const struct lm_point at = lm_view_point(&s->view, s->ownship);
     const int32_t radius = part_of_half(g, 50);
     const struct lm_spot centre = lm_pixel_middle(at);
-    lm_draw_arc(&pen, centre, radius, 0, FX_BAM_180);
-    lm_draw_arc(&pen, centre, radius, FX_BAM_180, FX_BAM_180);
+    lm_draw_arc(&pen, &(struct lm_arc){centre, radius, 0, FX_BAM_180});
+    lm_draw_arc(&pen, &(struct lm_arc){centre, radius, FX_BAM_180, FX_BAM_180});
     lm_draw_line(&pen, at, lm_ray_end(centre, s->ownship_heading, 2 * radius));
 }
 

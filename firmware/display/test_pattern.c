@@ -13,9 +13,11 @@ static void draw_greys(const struct lm_glass *g, int32_t top, int32_t height)
         pen.colour = g->palette->picture[i * 255 / (GREYS - 1)];
         lm_draw_box(&pen, width * i / GREYS, top, width / GREYS + 1, height);
     }
-    for (int32_t x = 0; x < width; x++) {
-        pen.colour = g->palette->picture[x * 256 / width];
-        lm_draw_box(&pen, x, top + height, 1, height / 2);
+    /* Column x has grey x * 256 / width. */
+    for (int32_t grey = 0; grey < 256; grey++) {
+        const int32_t x = (grey * width + 255) / 256, end = ((grey + 1) * width + 255) / 256;
+        pen.colour = g->palette->picture[grey];
+        lm_draw_box(&pen, x, top + height, end - x, height / 2);
     }
 }
 
@@ -35,7 +37,7 @@ static void draw_colours(const struct lm_glass *g, int32_t top, int32_t height)
 /* A grid of tenths of the glass, its diagonals, and circles that must be round. */
 static void draw_geometry(const struct lm_glass *g)
 {
-    struct lm_pen pen = lm_pen_for(&g->surface, g->palette->faint);
+    struct lm_pen pen = lm_glass_pen(g, g->palette->faint);
     const int32_t right = g->surface.width_px - 1, bottom = g->surface.height_px - 1;
     for (int32_t i = 0; i <= GRID; i++) {
         const int32_t x = right * i / GRID, y = bottom * i / GRID;
@@ -46,8 +48,8 @@ static void draw_geometry(const struct lm_glass *g)
     const struct lm_spot centre = lm_pixel_middle((struct lm_point){right / 2, bottom / 2});
     const int32_t radius = fx_min_i32(right, bottom) / 2;
     for (int32_t i = 1; i <= 3; i++) {
-        lm_draw_arc(&pen, centre, radius * i / 3, 0, FX_BAM_180);
-        lm_draw_arc(&pen, centre, radius * i / 3, FX_BAM_180, FX_BAM_180);
+        lm_draw_arc(&pen, &(struct lm_arc){centre, radius * i / 3, 0, FX_BAM_180});
+        lm_draw_arc(&pen, &(struct lm_arc){centre, radius * i / 3, FX_BAM_180, FX_BAM_180});
     }
     lm_draw_line(&pen, (struct lm_point){0, 0}, (struct lm_point){right, bottom});
     lm_draw_line(&pen, (struct lm_point){0, bottom}, (struct lm_point){right, 0});

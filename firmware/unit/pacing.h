@@ -7,6 +7,7 @@
 struct lm_paced {
     uint32_t lines;   /* drawn in this step */
     uint32_t dropped; /* 1 if drawing was too late and overdue lines were dropped, else 0 */
+    uint32_t left;    /* lines that the step still had time for, 0..LM_STEP_LINES */
 };
 
 /* Draw the lines that are due, until lines and traced azimuths together reach LM_STEP_LINES. Draws

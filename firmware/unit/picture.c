@@ -37,6 +37,7 @@ enum lm_refusal lm_picture_start(struct lm_picture *p, enum lm_picture_kind kind
     p->next_line_us = now_us;
     p->coverage = (struct lm_coverage){0};
     p->is_view_held = false;
+    p->is_step_spent = true;
     lm_plane_clear(&p->plane, &p->frame);
     return LM_REFUSED_NOT;
 }
@@ -103,6 +104,7 @@ bool lm_picture_draw_line(struct lm_picture *p, uint64_t now_us, uint32_t *azimu
     if (sweep != LM_SWEEP_GOES_ON) {
         lm_picture_follow_view(p, false);
     }
+    p->is_step_spent |= sweep == LM_SWEEP_BEGUN_AT_COST;
     if (sweep == LM_SWEEP_BEGUN_AT_COST || !m->sample_ahead(p, now_us, azimuths)) {
         return false;
     }

@@ -168,9 +168,10 @@ static enum lm_sweep begin_none(struct lm_picture *p, uint64_t now_us)
 
 static bool sample_ahead(struct lm_picture *p, uint64_t now_us, uint32_t *azimuths)
 {
-    (void)azimuths;
+    const uint32_t sampled = p->sar.sampled;
     const bool has_all =
         lm_sar_sample_ahead(&p->sar, &p->lent.map->tiles, SAMPLES_A_STEP, &p->line);
+    *azimuths -= fx_min_u32(p->sar.sampled - sampled, *azimuths);
     if (!has_all && p->sar.line == 0) {
         p->next_line_us = now_us; /* the first line creates no backlog */
     }

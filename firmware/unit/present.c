@@ -90,7 +90,6 @@ static struct lm_symbols describe(const struct lm_unit *u)
 static void show_radar(const struct lm_unit *u, const struct lm_glass *glass)
 {
     const struct lm_symbols symbols = describe(u);
-    lm_overlay_picture(glass, &u->picture.plane);
     lm_overlay_symbols(glass, &symbols);
     const struct lm_text database = lm_unit_map_refusal(&u->map);
     const struct lm_warning_reasons reasons = {database.words, lm_refusal_word(u->unable.reason)};
@@ -112,37 +111,86 @@ static void show_test(const struct lm_unit *u, const struct lm_glass *glass)
     lm_overlay_test_pattern(glass);
 }
 
-/* Drawing function of each page; the labels are drawn over it. */
-static void (*const draw_page[LM_FORMATS])(const struct lm_unit *u,
-                                           const struct lm_glass *glass) = {
-    [LM_FORMAT_RADAR] = show_radar, [LM_FORMAT_CNTL] = show_radar, [LM_FORMAT_DCLT] = show_radar,
-    [LM_FORMAT_BIT] = show_bit,     [LM_FORMAT_TEST] = show_test,
+/* What each page shows; the labels are drawn over it. */
+static const struct page_drawing {
+    bool has_picture;
+    void (*draw)(const struct lm_unit *u, const struct lm_glass *glass);
+} drawing_of[LM_FORMATS] = {
+    [LM_FORMAT_RADAR] = {true, show_radar}, [LM_FORMAT_CNTL] = {true, show_radar},
+    [LM_FORMAT_DCLT] = {true, show_radar},  [LM_FORMAT_BIT] = {false, show_bit},
+    [LM_FORMAT_TEST] = {false, show_test},
 };
 
-static void draw_glass(const struct lm_unit *u, const struct lm_surface *surface)
+/* Note what is on the glass now in the composer's list. */
+static void note_glass(const struct lm_unit *u, struct lm_composer *c)
 {
-    const struct lm_glass glass = {*surface, &u->picture.frame, &u->palette};
-    draw_page[u->page.format](u, &glass);
+    const struct lm_glass glass = {c->surface, &u->picture.frame, &u->palette, &c->list};
+    lm_draw_list_begin(&c->list, &c->changed);
+    drawing_of[u->page.format].draw(u, &glass);
     lm_overlay_labels(&glass, &u->page);
     lm_overlay_alive(&glass, u->count.frames);
+    lm_draw_list_end(&c->list);
 }
 
-void lm_show_frame(struct lm_unit *u, uint64_t now_us)
+/* A step that cannot end the frame composes with the list of a step before: what differs is damage
+ * when the list is noted again. */
+bool lm_compose_glass(const struct lm_unit *u, struct lm_composer *c, uint32_t pixels)
+{
+    const bool has_picture = drawing_of[u->page.format].has_picture;
+    const bool may_end = lm_composer_take(c, &u->palette) <= pixels;
+    if (may_end) {
+        note_glass(u, c);
+    }
+    return lm_composer_run(c, has_picture ? &u->picture.plane : NULL, pixels) && may_end;
+}
+
+/* Borrow a surface for the next frame. False if there is none. */
+static bool borrow_surface(struct lm_unit *u)
 {
     const struct lm_display *display = u->board->display;
-    struct lm_surface surface;
+    struct lm_surface surface = {0};
     const int status = display->acquire(display->ctx, &surface);
     if (status != LM_OK) {
         u->count.display_busy += status == LM_BUSY;
         u->count.display_errors += status < 0;
-        return;
+        return false;
     }
-    draw_glass(u, &surface);
-    u->count.display_errors += display->present(display->ctx) != LM_OK;
+    lm_composer_begin(&u->composer, &surface);
+    u->frame_steps = 0;
+    return true;
+}
+
+/* Compose what this step has time for: the lines that it did not draw leave their share. True if
+ * the frame is complete. */
+static bool compose_some(struct lm_unit *u, uint32_t lines_left)
+{
+    const uint32_t limit = u->board->glass_step_px;
+    const bool is_hurried = limit != 0 && ++u->frame_steps >= LM_FRAME_STEPS;
+    u->count.frames_hurried += is_hurried;
+    if (limit == 0 || is_hurried) {
+        return lm_compose_glass(u, &u->composer, UINT32_MAX);
+    }
+    return lines_left > 0 && lm_compose_glass(u, &u->composer, limit * lines_left / LM_STEP_LINES);
+}
+
+static void end_frame(struct lm_unit *u, uint64_t now_us)
+{
+    const struct lm_display *display = u->board->display;
+    u->count.display_errors += display->present(display->ctx, &u->composer.since[0]) != LM_OK;
+    lm_composer_finish(&u->composer);
     u->count.frames++;
-    /* Missed frames are not drawn later. */
+    /* Missed frames are not drawn later, and the display has its rest. */
     u->next_frame_us += LM_FRAME_US;
     if (u->next_frame_us <= now_us) {
         u->next_frame_us = now_us + LM_FRAME_US;
+    } else if (u->next_frame_us < now_us + LM_DISPLAY_REST_US) {
+        u->next_frame_us = now_us + LM_DISPLAY_REST_US;
+    }
+}
+
+void lm_show_frame(struct lm_unit *u, uint32_t lines_left, uint64_t now_us)
+{
+    if ((u->composer.is_lent || borrow_surface(u)) && compose_some(u, lines_left)) {
+        end_frame(u, now_us);
     }
 }

@@ -24,7 +24,8 @@ static void init_picture(struct lm_unit *u)
         .options = board->options,
     };
     const struct lm_plane plane = {board->plane, board->display->width_px,
-                                   board->display->height_px};
+                                   board->display->height_px, &u->composer.changed};
+    lm_composer_init(&u->composer, plane.width_px, plane.height_px);
     lm_picture_init(&u->picture, &lent, &plane);
 }
 
@@ -110,12 +111,14 @@ static void restart_after_jump(struct lm_unit *u, uint64_t now_us)
     }
 }
 
-static void draw_lines(struct lm_unit *u, uint64_t now_us)
+/* Draw the lines that are due. Returns how many more the step has time for. */
+static uint32_t draw_lines(struct lm_unit *u, uint64_t now_us)
 {
     const bool may_draw = (u->flags & LM_FLAGS_NO_LINES) == 0;
     const struct lm_paced paced = lm_draw_due_lines(&u->picture, may_draw, now_us);
     u->count.lines += paced.lines;
     u->count.lines_dropped += paced.dropped;
+    return paced.left;
 }
 
 void lm_unit_step(struct lm_unit *u, uint64_t now_us)
@@ -129,9 +132,9 @@ void lm_unit_step(struct lm_unit *u, uint64_t now_us)
     }
     lm_follow_cursor(u, now_us);
     lm_unit_map_service(&u->map, now_us);
-    draw_lines(u, now_us);
+    const uint32_t lines_left = draw_lines(u, now_us);
     lm_send_reports(u, now_us);
     if (now_us >= u->next_frame_us) {
-        lm_show_frame(u, now_us);
+        lm_show_frame(u, lines_left, now_us);
     }
 }

@@ -105,7 +105,10 @@ static void draw_rocker_name(struct lm_pen pen, const struct bezel *b, enum lm_r
 
 void bezel_draw(const struct bezel *b, uint32_t *pixels, const uint32_t *glass, uint32_t down)
 {
-    const struct lm_surface surface = {pixels, b->width_px, b->width_px, b->height_px};
+    const struct lm_surface surface = {.pixels = pixels,
+                                       .stride_px = b->width_px,
+                                       .width_px = b->width_px,
+                                       .height_px = b->height_px};
     struct lm_pen pen = lm_pen_for(&surface, PANEL);
     pen.dot_px = b->margin_px < 80 ? 1 : 2;
     lm_draw_box(&pen, 0, 0, b->width_px, b->height_px);

@@ -81,7 +81,8 @@ static int open_world(struct world *w, uint8_t shift0)
     memory_flash_open(&w->flash, w->image.bytes, w->image.size);
     const size_t bytes = 400 * sizeof(struct lm_tile);
     w->pool = malloc(bytes);
-    w->plane = (struct lm_plane){calloc(DISPLAY_PX, DISPLAY_PX), DISPLAY_PX, DISPLAY_PX};
+    w->plane = (struct lm_plane){
+        .pixels = calloc(DISPLAY_PX, DISPLAY_PX), .width_px = DISPLAY_PX, .height_px = DISPLAY_PX};
     w->frame = lm_frame_of_display(DISPLAY_PX, DISPLAY_PX);
     return w->pool && w->plane.pixels && lm_db_open(&w->db, &w->flash.port, 10) == LM_OK &&
                    lm_tile_cache_init(&w->tiles, &w->db, w->pool, bytes, 10) == LM_OK &&

@@ -13,7 +13,8 @@ struct memory_board {
     struct lm_can can;
     struct lm_controls controls;
     struct lm_display display; /* its ctx is this struct, which must not move */
-    uint32_t *glass;           /* borrowed */
+    uint32_t *glass;           /* borrowed: one buffer, which the firmware alone writes */
+    uint32_t presented;        /* pictures */
     int acquire_status;        /* what the display answers: enum lm_status */
     int present_status;
     struct lm_board lent; /* to the unit; a test may change it before it starts the unit */

@@ -155,7 +155,8 @@ void free_rig(struct rig *r)
 
 struct lm_surface glass_of(const struct rig *r)
 {
-    return (struct lm_surface){(uint32_t *)r->glass, WIDTH, WIDTH, HEIGHT};
+    return (struct lm_surface){
+        .pixels = (uint32_t *)r->glass, .stride_px = WIDTH, .width_px = WIDTH, .height_px = HEIGHT};
 }
 
 bool says(const struct rig *r, const char *words)

@@ -97,7 +97,7 @@ def sizes(image=IMAGE):
     for value, size, name in re.findall(r"^([0-9a-f]+) ([0-9a-f]+) \w (\S+)$", listing, re.M):
         where = int(value, 16)
         if at["__bulk_start"] <= where < at["__shared_end"] and int(size, 16) >= 1024:
-            rows[{"tile_pool": "tile cache", "plane": "radar picture", "drawn": "framebuffer, drawn",
+            rows[{"tile_pool": "tile cache", "plane": "radar picture",
                   "scanned": "framebuffers, scanned out", "flash_piece": "flash DMA"}.get(name, name)] = (
                       where, int(size, 16))
     return rows
@@ -111,7 +111,7 @@ def unpadded(image=IMAGE):
 
 def budgets(rows, main):
     """(what, bytes, most) of docs/EQUATIONS.md's memory budgets."""
-    apart = ("tile cache", "framebuffer, drawn", "framebuffers, scanned out", "text", "rodata")
+    apart = ("tile cache", "framebuffers, scanned out", "text", "rodata")
     return [("text + rodata", rows["text"][1] + rows["rodata"][1], 320 * KIB),
             ("static RAM beside tile cache and framebuffers",
              sum(size for name, (_, size) in rows.items() if name not in apart), 2048 * KIB),

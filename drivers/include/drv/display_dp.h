@@ -2,9 +2,10 @@
  * memory by channel 3 of its DMA. Registers and sequences: UG1085, chapter 33, and UG1087, modules
  * DP and DPDMA; blanking: VESA Coordinated Video Timings 1.2, reduced blanking.
  *
- * The firmware draws in cached memory. present writes the picture into the scan-out buffer that is
- * not shown, in the plane's format (red in the highest byte). The DMA reads that buffer from the
- * next frame on, so no picture is shown half drawn. Cost: about one instruction a pixel.
+ * The firmware draws in the scan-out buffer that is not shown, in the plane's format (red in the
+ * highest byte), and finds there the picture before the last. The DMA reads that buffer from the
+ * next frame on, so no picture is shown half drawn; it has left the other one after
+ * LM_DISPLAY_REST_US. Cost: nothing by the pixel.
  *
  * Tested in QEMU: the picture shown, bit for bit, at several resolutions. QEMU reads the picture
  * only on request, so tearing cannot be tested. NOT done here: the clocks of pixels and serial
@@ -21,7 +22,7 @@ struct drv_display_descriptor {
     uint32_t words[16];
 };
 
-enum { DRV_DISPLAY_BUFFERS = 2 };
+enum { DRV_DISPLAY_BUFFERS = 2, DRV_DISPLAY_SHIFT = 8 };
 
 /* Scan-out memory, not cached, 256-byte aligned. */
 struct drv_display_scan {
@@ -32,9 +33,8 @@ struct drv_display_scan {
 struct drv_display {
     drv_registers dp, dma;
     struct drv_dp_link link;
-    uint32_t *drawn;                /* borrowed */
     struct drv_display_scan *scans; /* borrowed: DRV_DISPLAY_BUFFERS */
-    uint32_t next;                  /* index of the buffer that is not shown */
+    uint32_t presented; /* pictures; buffer `presented` % DRV_DISPLAY_BUFFERS is shown */
     struct lm_display
         port; /* hand this to the firmware; its ctx is this struct, which must not move */
 };
@@ -45,7 +45,6 @@ struct drv_display_config {
     uint64_t (*now_us)(const void *clock);
     const void *clock;
     uint16_t width_px, height_px; /* multiples of 4 */
-    uint32_t *drawn;              /* width_px * height_px pixels that the firmware draws in */
     struct drv_display_scan *scans;
 };
 

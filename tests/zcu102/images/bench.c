@@ -3,6 +3,7 @@
  *
  *   stage MODE NAME CALLS INSTRUCTIONS MOST      of chosen functions (images.mk)
  *   stage MODE line|step|frame-step ...          a line, a step without and with a picture
+ *   stage MODE steady-frame|whole-frame ...      a picture of at most three steps, or of more
  *   first-picture-us N                           since the reset */
 #include "board.h"
 #include "console.h"
@@ -20,12 +21,17 @@ void instrument_nothing(void)
 _Static_assert(LM_SECTOR_MODES *LM_FOVS + 1 < INSTRUMENT_MODES,
                "a sum for each mode and both patches");
 
+/* What changes in the steady sweep is composed in one step, or in two or three with many lines. */
+enum { STEADY_STEPS = 3 };
+
 struct bench {
     struct zcu102 z;
     struct handed handed;
     struct lm_can can;
     struct lm_controls controls;
     struct instrument_sum steps[INSTRUMENT_MODES], frame_steps[INSTRUMENT_MODES];
+    struct instrument_sum steady[INSTRUMENT_MODES]; /* frames of few steps, and of more */
+    struct instrument_sum whole[INSTRUMENT_MODES];
     uint64_t first_picture_us;
 };
 
@@ -49,13 +55,20 @@ static uint32_t mode_of(const struct lm_unit *unit)
 static void fly(struct bench *b)
 {
     struct zcu102 *z = &b->z;
+    uint64_t frame = 0; /* instructions that the frame under way has taken */
     for (z->step_us = 0; z->step_us <= b->handed.header->end_us; z->step_us += ZCU102_STEP_US) {
         const uint32_t mode = mode_of(&z->unit), frames = z->unit.count.frames;
         instrument_set_mode(mode);
+        const uint64_t before = instrument_of("lm_show_frame", mode);
         const uint64_t start = instrument_now();
         lm_unit_step(&z->unit, z->step_us);
         add(z->unit.count.frames == frames ? &b->steps[mode] : &b->frame_steps[mode],
             instrument_now() - start);
+        frame += instrument_of("lm_show_frame", mode) - before;
+        if (z->unit.count.frames != frames) {
+            add(z->unit.frame_steps <= STEADY_STEPS ? &b->steady[mode] : &b->whole[mode], frame);
+            frame = 0;
+        }
         if (frames == 0 && z->unit.count.frames != 0) {
             const struct drv_timer since_reset = {.hz = z->timer.hz};
             b->first_picture_us = drv_timer_us(&since_reset);
@@ -93,6 +106,8 @@ static void report(struct bench *b)
         print(u, mode, "line", &result->lines[mode]);
         print(u, mode, "step", &b->steps[mode]);
         print(u, mode, "frame-step", &b->frame_steps[mode]);
+        print(u, mode, "steady-frame", &b->steady[mode]);
+        print(u, mode, "whole-frame", &b->whole[mode]);
     }
     zcu102_print_value(u, "first-picture-us", b->first_picture_us);
     zcu102_print_value(u, "stack-used", zcu102_stack_used());

@@ -82,14 +82,14 @@ static int acquire(void *ctx, struct lm_surface *surface)
                : f->z.display.port.acquire(f->z.display.port.ctx, surface);
 }
 
-static int present(void *ctx)
+static int present(void *ctx, const struct lm_damage *changed)
 {
     struct flight *f = ctx;
     if (f->first_picture_us == 0) {
         const struct drv_timer since_reset = {.hz = f->z.timer.hz};
         f->first_picture_us = drv_timer_us(&since_reset);
     }
-    return f->z.display.port.present(f->z.display.port.ctx);
+    return f->z.display.port.present(f->z.display.port.ctx, changed);
 }
 
 static void put_between(struct flight *f)
@@ -110,7 +110,7 @@ static void keep_pictures(struct flight *f)
 {
     while (f->next_picture < f->handed.header->pictures &&
            f->handed.pictures[f->next_picture].time_us <= f->z.step_us) {
-        memcpy(album[f->next_picture], f->z.display.drawn, sizeof album[0]);
+        look_keep(&f->z.display, album[f->next_picture]);
         f->next_picture++;
     }
 }
@@ -118,8 +118,7 @@ static void keep_pictures(struct flight *f)
 static void show_pictures(struct flight *f)
 {
     for (uint32_t i = 0; i < f->next_picture; i++) {
-        f->z.display.drawn = album[i];
-        f->z.display.port.present(f->z.display.port.ctx);
+        look_show(&f->z.display, album[i]);
         look(&f->z.console, &f->z.display, f->handed.pictures[i].name);
     }
 }

@@ -55,10 +55,9 @@ static void show(struct zcu102 *z, const char *name)
                                               .clock = &z->timer,
                                               .width_px = rig.board.display.width_px,
                                               .height_px = rig.board.display.height_px,
-                                              .drawn = rig.glass,
                                               .scans = scans};
     drv_display_open(&z->display, &config);
-    z->display.port.present(z->display.port.ctx);
+    look_show(&z->display, rig.glass);
     look(&z->console, &z->display, name);
 }
 

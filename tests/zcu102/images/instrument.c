@@ -135,6 +135,17 @@ uint64_t instrument_now(void)
     return state.now;
 }
 
+uint64_t instrument_of(const char *name, uint32_t mode)
+{
+    uint64_t sum = 0;
+    for (uint32_t i = 0; i < instrument_stages; i++) {
+        const bool is_it =
+            begins_with(instrument_names[i], name) && ends_in(instrument_names[i], name);
+        sum += is_it ? state.result.sums[mode][i].instructions : 0;
+    }
+    return sum;
+}
+
 const struct instrument *instrument_result(void)
 {
     return &state.result;

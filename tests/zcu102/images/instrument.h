@@ -31,6 +31,9 @@ void instrument_set_mode(uint32_t mode);
 /* Instructions so far, without the instrument's. */
 uint64_t instrument_now(void);
 
+/* Those of a stage so far, in a mode. */
+uint64_t instrument_of(const char *name, uint32_t mode);
+
 const struct instrument *instrument_result(void);
 
 #endif

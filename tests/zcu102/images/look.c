@@ -5,10 +5,43 @@
 #include "exception.h"
 #include "fx/crc32c.h"
 
+static const uint32_t *shown(const struct drv_display *display)
+{
+    return display->scans[display->presented % DRV_DISPLAY_BUFFERS].pixels;
+}
+
+static uint32_t pixels_of(const struct drv_display *display)
+{
+    return (uint32_t)display->port.width_px * display->port.height_px;
+}
+
 uint32_t look_checksum(const struct drv_display *display)
 {
-    const struct lm_display *port = &display->port;
-    return fx_crc32c(0, display->drawn, (size_t)port->width_px * port->height_px * 4);
+    uint32_t crc = 0;
+    const uint32_t *const pixels = shown(display);
+    for (uint32_t i = 0; i < pixels_of(display); i++) {
+        const uint32_t pixel = pixels[i] >> DRV_DISPLAY_SHIFT;
+        crc = fx_crc32c(crc, &pixel, sizeof pixel);
+    }
+    return crc;
+}
+
+void look_keep(const struct drv_display *display, uint32_t *pixels)
+{
+    for (uint32_t i = 0; i < pixels_of(display); i++) {
+        pixels[i] = shown(display)[i] >> DRV_DISPLAY_SHIFT;
+    }
+}
+
+void look_show(struct drv_display *display, const uint32_t *pixels)
+{
+    static const struct lm_damage unused;
+    struct lm_surface surface;
+    display->port.acquire(display, &surface);
+    for (uint32_t i = 0; i < pixels_of(display); i++) {
+        surface.pixels[i] = pixels[i] << surface.shift;
+    }
+    display->port.present(display, &unused);
 }
 
 void look(struct drv_uart *console, const struct drv_display *display, const char *name)

@@ -31,6 +31,7 @@
 #include <stdbool.h>
 #include <stdint.h>
 
+#include "lm/damage.h"
 #include "lm/refusal.h"
 #include "lm/status.h"
 
@@ -98,29 +99,42 @@ struct lm_can {
     int (*send)(void *ctx, const struct lm_can_frame *frame);
 };
 
-/* Surface: memory of a picture. A pixel is 0x00RRGGBB; row 0 is on top. */
+/* Surface: memory of a picture. A pixel is 0x00RRGGBB << shift; row 0 is on top. The firmware
+ * writes pixels and reads none. */
 struct lm_surface {
     uint32_t *pixels;
     uint32_t stride_px; /* distance between rows, width_px or more */
     uint16_t width_px, height_px;
+    uint8_t shift; /* 0 or 8 */
+    uint8_t age;   /* what the memory holds: the picture presented `age` calls of `present` ago, all
+                      of it, as in EGL_EXT_buffer_age; 0: anything */
 };
+
+/* The greatest age that spares work: with more buffers a whole picture is drawn each time. */
+enum { LM_AGES = 3 };
 
 /* Display. */
 struct lm_display {
     void *ctx;
     uint16_t width_px, height_px; /* 256..1024 each; constant while the unit runs */
 
-    /* Lend a surface to the firmware, for the next picture. Its old contents are unspecified. Never
-     * waits. Returns
-     * - LM_OK: *surface is filled and lent until `present`.
+    /* Lend a surface to the firmware, for the next picture. Where surface->age is set, only what
+     * changed since then is drawn. Called no sooner than LM_DISPLAY_REST_US after `present`: a
+     * screen of 60 pictures a second has then left the memory that it showed before. Never waits.
+     * Returns
+     * - LM_OK: *surface is filled and lent until `present`, perhaps over several steps.
      * - LM_BUSY: no surface is free; the picture is drawn a step later.
      * - LM_ERR_IO: the device failed; nothing is lent. */
     int (*acquire)(void *ctx, struct lm_surface *surface);
 
-    /* Show the lent surface. LM_OK, or LM_ERR_IO if the device failed. The surface is the driver's
-     * again in both cases. */
-    int (*present)(void *ctx);
+    /* Show the lent surface, which is complete. It differs from the picture presented before within
+     * the blocks of *changed, borrowed for the call. LM_OK, or LM_ERR_IO if the device failed. The
+     * surface is the driver's again in both cases. */
+    int (*present)(void *ctx, const struct lm_damage *changed);
 };
+
+/* Time between `present` and the next `acquire`, at least. */
+enum { LM_DISPLAY_REST_US = 17000 };
 
 struct lm_control; /* lm/controls.h */
 

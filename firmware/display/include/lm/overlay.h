@@ -1,6 +1,5 @@
-/* Overlay: everything drawn on the glass: the plane through its palette, symbols, labels, warnings
- * and pages of text. It remembers nothing and nothing fails. All pointers are borrowed for the
- * call.
+/* Overlay: everything drawn over the picture: symbols, labels, warnings and pages of text. It
+ * remembers nothing and nothing fails. All pointers are borrowed for the call.
  *
  * lm/controls.h draws where the option select buttons (OSB) stand around the glass.
  */
@@ -91,11 +90,8 @@ struct lm_glass {
     struct lm_surface surface;
     const struct lm_frame *frame;
     const struct lm_palette *palette;
+    struct lm_draw_list *list; /* notes what is drawn; NULL: it is drawn at once */
 };
-
-/* Fill the surface with the plane, in the palette's colours. Both are equally large. Cost: 3
- * instructions a pixel, 1 where it is black. */
-void lm_overlay_picture(const struct lm_glass *g, const struct lm_plane *plane);
 
 /* Fill the surface with the palette's ink: the ground of a page of text. */
 void lm_overlay_blank(const struct lm_glass *g);

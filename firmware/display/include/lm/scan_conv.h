@@ -21,11 +21,14 @@
 #include <stdint.h>
 
 #include "fx/types.h"
+#include "lm/damage.h"
 
 /* Plane: the picture before colours and symbols. */
 struct lm_plane {
     uint8_t *pixels; /* lent by the board: width_px * height_px greys, the top row first */
     uint16_t width_px, height_px;
+    struct lm_damage *damage; /* borrowed: takes the pixels that the functions below may change; or
+                                 NULL */
 };
 
 /* Frame: a rectangle of the plane, and within it. */

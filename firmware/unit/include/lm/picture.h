@@ -64,6 +64,7 @@ struct lm_picture {
     struct lm_line line; /* work space */
     struct lm_coverage coverage;
     uint64_t next_line_us; /* when the next line is due */
+    bool is_step_spent;    /* a picture or a sweep began in this step, at the cost of a step */
 
     struct lm_plane plane; /* the pixels are lent by the board */
     struct lm_frame frame; /* part of the plane that shows radar */

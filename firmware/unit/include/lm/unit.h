@@ -32,6 +32,7 @@
 #include "lm/bus.h"
 #include "lm/canas_report.h"
 #include "lm/canas_service.h"
+#include "lm/composer.h"
 #include "lm/controls.h"
 #include "lm/cursor.h"
 #include "lm/fault_log.h"
@@ -58,8 +59,10 @@ struct lm_board {
     const struct lm_display *display;
     void *tile_pool; /* 8-byte aligned */
     size_t tile_pool_bytes;
-    uint8_t *plane;      /* one byte for each pixel of the display */
-    uint32_t noise_seed; /* chooses the draws of speckle and noise, and nothing else */
+    uint8_t *plane;         /* one byte for each pixel of the display */
+    uint32_t glass_step_px; /* pixels that a step without lines composes, 4,096 or more;
+                               0: no limit */
+    uint32_t noise_seed;    /* chooses the draws of speckle and noise, and nothing else */
     struct lm_glass_options options;
     uint32_t flash_poll_limit; /* polls after which a read at the start is given up */
     const char *restart;       /* cause of the board's restart, at most 20 capitals; NULL: power was
@@ -68,6 +71,12 @@ struct lm_board {
 
 /* Time between two frames, and the silence on the bus after which LM_FLAG_BUS rises. */
 enum { LM_FRAME_US = 33333, LM_BUS_SILENT_US = 1000000 };
+
+/* A glass_step_px that keeps each step of docs/zcu102.md below a line's 390,000 instructions. */
+enum { LM_GLASS_STEP_PX = 24576 };
+
+/* Steps that a frame takes at most, from its surface lent to the surface shown. */
+enum { LM_FRAME_STEPS = 64 };
 
 /* Elevation of a position outside the map. */
 #define LM_NO_ELEVATION INT32_MIN
@@ -112,6 +121,8 @@ struct lm_unit {
     enum lm_refusal refusal; /* reason of the control refused last */
 
     struct lm_picture picture;
+    struct lm_composer composer;
+    uint32_t frame_steps; /* that the frame on the lent surface has taken so far */
     uint64_t next_frame_us;
 
     uint32_t flags; /* enum lm_flag, as of the last step */
@@ -123,6 +134,7 @@ struct lm_unit {
         uint32_t bus_errors;       /* the driver reported the bus down */
         uint32_t display_errors;   /* acquire or present failed */
         uint32_t display_busy;     /* no surface was free when a frame was due */
+        uint32_t frames_hurried;   /* frames completed beyond glass_step_px, after LM_FRAME_STEPS */
         uint32_t commands_refused; /* controls with a value out of range, or not possible now */
         uint32_t swaps; /* SWAP presses: a board with two displays exchanges their pages */
     } count;            /* only ever grow */
@@ -148,7 +160,8 @@ int lm_unit_init(struct lm_unit *u, const struct lm_board *board);
  * - start and finish reads of tiles, without waiting;
  * - draw at most LM_STEP_LINES lines;
  * - tell the other avionics what is due, at most LM_REPORT_FRAMES_A_STEP frames;
- * - draw and show the glass, every LM_FRAME_US.
+ * - compose the glass, at most board->glass_step_px pixels, and show it when it is complete, every
+ *   LM_FRAME_US.
  * Call at least every 4 ms for a smooth sweep. Never waits and never fails: errors show in u->flags
  * and u->count. Cost: docs/benchmarks.md. */
 void lm_unit_step(struct lm_unit *u, uint64_t now_us);

@@ -34,7 +34,8 @@ static struct lm_surface picture(uint32_t *pixels, uint16_t width, uint16_t heig
             pixels[y * STRIDE + x] = colour(x, y);
         }
     }
-    return (struct lm_surface){pixels, STRIDE, width, height};
+    return (struct lm_surface){
+        .pixels = pixels, .stride_px = STRIDE, .width_px = width, .height_px = height};
 }
 
 /* Blit and compare each pixel of the target, borders included. */
@@ -92,7 +93,8 @@ TEST(rgb565_keeps_the_upper_bits_of_each_colour)
     for (uint32_t i = 0; i < 256; i++) {
         pixels[i] = i << 16 | (255 - i) << 8 | (i ^ 0x55);
     }
-    const struct lm_surface from = {pixels, 256, 256, 1};
+    const struct lm_surface from = {
+        .pixels = pixels, .stride_px = 256, .width_px = 256, .height_px = 1};
     const struct drv_target to = {target, sizeof target, 256, 1, DRV_RGB565};
     drv_blit(&to, &from, DRV_TURN_0);
     for (uint32_t i = 0; i < 256; i++) {

@@ -20,7 +20,8 @@ static const struct drv_drm_config standard = {.device = "/dev/dri/fake"};
 static void set_up(struct rig *r, const struct drv_drm_config *config)
 {
     fake_drm_reset();
-    r->picture = (struct lm_surface){r->pixels, WIDTH, WIDTH, HEIGHT};
+    r->picture = (struct lm_surface){
+        .pixels = r->pixels, .stride_px = WIDTH, .width_px = WIDTH, .height_px = HEIGHT};
     r->now_us = 5000000;
     assert_int_equal(drv_drm_open(&r->drm, config, r->now_us), LM_OK);
 }

@@ -93,7 +93,8 @@ static int show(struct drv_fbdev *f, uint32_t colour)
     for (int i = 0; i < SIDE * SIDE; i++) {
         pixels[i] = colour;
     }
-    const struct lm_surface picture = {pixels, SIDE, SIDE, SIDE};
+    const struct lm_surface picture = {
+        .pixels = pixels, .stride_px = SIDE, .width_px = SIDE, .height_px = SIDE};
     return drv_fbdev_present(f, &picture);
 }
 

@@ -1,6 +1,7 @@
 /* Palettes, primitives, text and the picture's colours. */
 #include "check.h"
 #include "glass_text.h"
+#include "lm/composer.h"
 #include "lm/font.h"
 #include "lm/overlay.h"
 
@@ -21,7 +22,10 @@ static struct lm_surface make_surface(uint16_t width, uint16_t height)
     for (size_t i = 0; i < stride * (height + 2u * GUARD); i++) {
         block[i] = CANARY;
     }
-    return (struct lm_surface){block + GUARD * stride + GUARD, (uint32_t)stride, width, height};
+    return (struct lm_surface){.pixels = block + GUARD * stride + GUARD,
+                               .stride_px = (uint32_t)stride,
+                               .width_px = width,
+                               .height_px = height};
 }
 
 static void free_surface(struct lm_surface *s)
@@ -135,10 +139,12 @@ TEST(the_picture_goes_through_the_palette_pixel_by_pixel)
     struct lm_palette p;
     const struct lm_palette_config amber = {.tint = LM_TINT_AMBER, .contrast = 2};
     lm_palette_set(&p, &amber);
-    const struct lm_frame frame = lm_frame_of_display(300, 256);
-    const struct lm_glass g = {s, &frame, &p};
-    const struct lm_plane plane = {grey, 300, 256};
-    lm_overlay_picture(&g, &plane);
+    const struct lm_plane plane = {.pixels = grey, .width_px = 300, .height_px = 256};
+    static struct lm_composer composer;
+    lm_composer_init(&composer, 300, 256);
+    lm_composer_begin(&composer, &s);
+    assert_int_equal(lm_composer_take(&composer, &p), 304 * 256); /* whole blocks */
+    assert_true(lm_composer_run(&composer, &plane, UINT32_MAX));
     for (uint32_t y = 0; y < 256; y++) {
         for (uint32_t x = 0; x < 300; x++) {
             assert_int_equal(s.pixels[y * s.stride_px + x], p.picture[grey[y * 300 + x]]);
@@ -166,11 +172,11 @@ TEST(nothing_is_drawn_beyond_the_surface)
         lm_draw_box(&pen, 50, 50, -10, -10);
         lm_draw_text(&pen, -8, -9, "WMW");
         lm_draw_text(&pen, s.width_px - 9, s.height_px - 9, "WMW");
-        lm_draw_arc(&pen, (struct lm_spot){800, 800}, 100, 0, FX_BAM_180);
+        lm_draw_arc(&pen, &(struct lm_arc){{800, 800}, 100, 0, FX_BAM_180});
         struct lm_palette palette;
         lm_palette_set(&palette, &(struct lm_palette_config){0});
         const struct lm_frame frame = lm_frame_of_display(s.width_px, s.height_px);
-        const struct lm_glass g = {s, &frame, &palette};
+        const struct lm_glass g = {.surface = s, .frame = &frame, .palette = &palette};
         lm_overlay_test_pattern(&g);
         lm_overlay_warnings(&g, UINT32_MAX, &reasons);
         for (uint32_t row = 0; row < 60; row++) {
@@ -204,7 +210,8 @@ TEST(a_line_is_whole_and_as_wide_as_the_pen)
 TEST(text_keeps_its_share_of_the_glass_and_thirty_four_columns_fit)
 {
     for (uint16_t side = 256; side <= 1024; side++) {
-        const struct lm_surface s = {NULL, side, side, side};
+        const struct lm_surface s = {
+            .pixels = NULL, .stride_px = side, .width_px = side, .height_px = side};
         const struct lm_pen pen = lm_pen_for(&s, 0);
         const double share = 7.0 * pen.dot_px / side;
         assert_true(share > 0.0165 && share < 0.034);
@@ -252,7 +259,7 @@ TEST(each_flag_has_a_word_of_its_own_on_the_glass)
     for (uint16_t side = 256; side <= 1024; side += 256) {
         struct lm_surface s = make_surface(side, side);
         const struct lm_frame frame = lm_frame_of_display(side, side);
-        const struct lm_glass g = {s, &frame, &palette};
+        const struct lm_glass g = {.surface = s, .frame = &frame, .palette = &palette};
         lm_overlay_blank(&g);
         lm_overlay_warnings(&g, (1u << LM_FLAGS) - 1, &reasons);
         for (uint32_t i = 0; i < LM_FLAGS; i++) {
@@ -271,7 +278,7 @@ TEST(the_test_pattern_shows_sixteen_greys_every_colour_and_every_character)
     lm_palette_set(&palette, &(struct lm_palette_config){0});
     struct lm_surface s = make_surface(480, 480);
     const struct lm_frame frame = lm_frame_of_display(480, 480);
-    const struct lm_glass g = {s, &frame, &palette};
+    const struct lm_glass g = {.surface = s, .frame = &frame, .palette = &palette};
     lm_overlay_test_pattern(&g);
     for (uint32_t i = 0; i < 16; i++) {
         assert_true(glass_count(&s, i * 17 * 0x010101u) > 1000);
@@ -299,7 +306,7 @@ TEST(the_bars_of_the_test_pattern_have_no_gaps)
     lm_palette_set(&p, &(struct lm_palette_config){.tint = 1});
     const struct lm_surface s = make_surface(512, 512);
     const struct lm_frame frame = lm_frame_of_display(512, 512);
-    lm_overlay_test_pattern(&(struct lm_glass){s, &frame, &p});
+    lm_overlay_test_pattern(&(struct lm_glass){.surface = s, .frame = &frame, .palette = &p});
     const uint32_t *greys = s.pixels + 120 * s.stride_px, *colours = s.pixels + 380 * s.stride_px;
     for (uint32_t x = 0; x < 512; x++) {
         assert_int_equal(greys[x], p.picture[x * 16 / 512 * 255 / 15]);
@@ -321,7 +328,7 @@ TEST(the_grid_of_the_test_pattern_reaches_from_edge_to_edge_and_its_circles_are_
     lm_palette_set(&p, &(struct lm_palette_config){0});
     struct lm_surface s = make_surface(500, 500);
     const struct lm_frame frame = lm_frame_of_display(500, 500);
-    lm_overlay_test_pattern(&(struct lm_glass){s, &frame, &p});
+    lm_overlay_test_pattern(&(struct lm_glass){.surface = s, .frame = &frame, .palette = &p});
     for (uint32_t i = 0; i <= 10; i++) {
         const uint32_t at = 499 * i / 10;
         assert_int_equal(s.pixels[20 * s.stride_px + at],
@@ -360,7 +367,7 @@ static struct lm_surface draw_patch_symbols(uint32_t cell_mm, double look_deg, s
     const fx_bam_t look = (fx_bam_t)(int64_t)(look_deg / 360 * 4294967296.0);
     *view = lm_view_of_patch(&frame, (struct lm_position){0, 0}, look, 256, cell_mm);
     const struct lm_symbols symbols = {.view = *view, .patch_look = look, .patch_cell_mm = cell_mm};
-    const struct lm_glass glass = {surface, &frame, &palette};
+    const struct lm_glass glass = {.surface = surface, .frame = &frame, .palette = &palette};
     lm_overlay_symbols(&glass, &symbols);
     return surface;
 }

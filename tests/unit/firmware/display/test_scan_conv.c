@@ -26,7 +26,8 @@ static void make_glass(struct glass *g, uint16_t width_px, uint16_t height_px)
     g->memory = malloc(3 * bytes);
     assert_non_null(g->memory);
     memset(g->memory, GUARD, 3 * bytes);
-    g->plane = (struct lm_plane){g->memory + bytes, width_px, height_px};
+    g->plane = (struct lm_plane){
+        .pixels = g->memory + bytes, .width_px = width_px, .height_px = height_px};
     g->frame = lm_frame_of_display(width_px, height_px);
     g->is_whole = false;
     lm_plane_clear(&g->plane, &g->frame);

@@ -13,7 +13,7 @@
 enum { CELLS = 256, WIDTH = 600, HEIGHT = 512 };
 
 static uint8_t pixels[WIDTH * HEIGHT];
-static const struct lm_plane plane = {pixels, WIDTH, HEIGHT};
+static const struct lm_plane plane = {.pixels = pixels, .width_px = WIDTH, .height_px = HEIGHT};
 
 static struct lm_view_from from_here(void)
 {

@@ -57,7 +57,8 @@ static int acquire(void *ctx, struct lm_surface *surface)
     const uint16_t side = (uint16_t)w->side_px;
     w->texts = 0;
     memset(w->is_text, 0, (size_t)side * side);
-    *surface = (struct lm_surface){w->glass, side, side, side};
+    *surface = (struct lm_surface){
+        .pixels = w->glass, .stride_px = side, .width_px = side, .height_px = side};
     return LM_OK;
 }
 
@@ -100,7 +101,8 @@ void walk_end(struct walk *w)
 int32_t walk_dot_px(const struct walk *w)
 {
     const uint16_t side = (uint16_t)w->side_px;
-    const struct lm_surface s = {w->glass, side, side, side};
+    const struct lm_surface s = {
+        .pixels = w->glass, .stride_px = side, .width_px = side, .height_px = side};
     return lm_pen_for(&s, 0).dot_px;
 }
 
