@@ -16,6 +16,7 @@
 #include <inttypes.h>
 #include <stdarg.h>
 #include <stdbool.h>
+#include <stdlib.h>
 #include <string.h>
 #include <sys/mman.h>
 #include <sys/stat.h>
@@ -479,4 +480,16 @@ const struct lm_band *image_band(const struct image *image, uint8_t level, uint3
         }
     }
     return NULL;
+}
+
+static int by_place(const void *a, const void *b, void *entries)
+{
+    const struct lm_tile_entry *all = entries;
+    const uint32_t x = all[*(const uint32_t *)a].place, y = all[*(const uint32_t *)b].place;
+    return (x > y) - (x < y);
+}
+
+void image_sort_by_place(const struct image *image, uint32_t *entries, uint32_t count)
+{
+    qsort_r(entries, count, sizeof *entries, by_place, (void *)image->entries);
 }

@@ -8,13 +8,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-static int by_place(const void *a, const void *b, void *entries)
-{
-    const struct lm_tile_entry *all = entries;
-    const uint32_t x = all[*(const uint32_t *)a].place, y = all[*(const uint32_t *)b].place;
-    return (x > y) - (x < y);
-}
-
 /* Append the tiles in the order of their records. */
 static int copy_tiles(const struct image *image, struct image_writer *w)
 {
@@ -30,7 +23,7 @@ static int copy_tiles(const struct image *image, struct image_writer *w)
             entries[count++] = i;
         }
     }
-    qsort_r(entries, count, sizeof *entries, by_place, (void *)image->entries);
+    image_sort_by_place(image, entries, count);
     int result = 0;
     for (uint32_t i = 0; i < count && result == 0; i++) {
         result = image_writer_tile(w, entries[i], image_entry_tile(image, entries[i]));

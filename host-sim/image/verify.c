@@ -223,13 +223,6 @@ static bool check_entry(struct verify *v, uint32_t number)
     return true;
 }
 
-static int by_place(const void *a, const void *b, void *entries)
-{
-    const struct lm_tile_entry *all = entries;
-    const uint32_t x = all[*(const uint32_t *)a].place, y = all[*(const uint32_t *)b].place;
-    return (x > y) - (x < y);
-}
-
 /* Records must share no byte, and leave none of TILES to nobody. */
 static void check_places(struct verify *v)
 {
@@ -267,7 +260,7 @@ static void check_directory(struct verify *v)
             v->entries[v->entry_count++] = i;
         }
     }
-    qsort_r(v->entries, v->entry_count, sizeof *v->entries, by_place, (void *)v->image->entries);
+    image_sort_by_place(v->image, v->entries, v->entry_count);
     check_places(v);
 }
 

@@ -76,6 +76,9 @@ const struct lm_tile *image_find_tile(const struct image *image, uint8_t level, 
 /* Offset in the image of the record of an entry that has one. */
 uint64_t image_record_offset(const struct image *image, uint32_t entry);
 
+/* Sort entry numbers by where their records lie. */
+void image_sort_by_place(const struct image *image, uint32_t *entries, uint32_t count);
+
 /* Does a band hold this tile, and which zone is it in? Returns the band or NULL. */
 const struct lm_band *image_band(const struct image *image, uint8_t level, uint32_t row);
 
