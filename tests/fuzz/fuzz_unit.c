@@ -3,6 +3,8 @@
  * step by step (see act). */
 #include "bus_frames.h"
 #include "fuzz.h"
+#include "lm/image.h"
+#include "lm/radar_record.h"
 #include "memory_board.h"
 #include "seal.h"
 #include "tiny_image.h"
@@ -78,6 +80,10 @@ static const struct tiny_image *base_image(unsigned place)
         spec.cell = scene_cell;
         spec.elevation_m = scene_elevation;
         FUZZ_ASSERT(tiny_image_build(&images[place], &spec) == 0);
+        uint8_t radar[LM_RADAR_RECORD_BYTES];
+        lm_radar_pack(&lm_radar_default, radar);
+        FUZZ_ASSERT(tiny_image_add_section(&images[place], LM_IMAGE_RADAR, radar, sizeof radar) ==
+                    0);
     }
     return &images[place];
 }
@@ -87,13 +93,18 @@ static void patch(struct tiny_image *image, struct fuzz_supply *s)
     const uint8_t region = fuzz_u8(s);
     const uint16_t at = fuzz_u16(s);
     const uint32_t value = fuzz_u32(s);
-    const size_t starts[] = {0, image->classes_offset, image->bands_offset, image->directory_offset,
+    const size_t starts[] = {0,
+                             image->classes_offset,
+                             image->bands_offset,
+                             image->directory_offset,
                              image->tiles_offset +
-                                 (size_t)LM_TILE_BYTES * ((region >> 5) % image->record_count)};
-    const size_t lengths[] = {LM_DB_HEADER_BYTES, sizeof(struct lm_classes),
-                              image->band_count * 24u,
-                              image->entry_count * sizeof(struct lm_tile_entry), LM_TILE_BYTES};
-    const unsigned which = region % 5;
+                                 (size_t)LM_TILE_BYTES * ((region >> 5) % image->record_count),
+                             image->size - LM_RADAR_RECORD_BYTES};
+    const size_t lengths[] = {
+        LM_DB_HEADER_BYTES,      sizeof(struct lm_classes),
+        image->band_count * 24u, image->entry_count * sizeof(struct lm_tile_entry),
+        LM_TILE_BYTES,           LM_RADAR_RECORD_BYTES};
+    const unsigned which = region % 6;
     const size_t width = (size_t)1 << (region >> 3 & 3) & 7;
     if (width) {
         memcpy(image->bytes + starts[which] + at % (lengths[which] - 3), &value,
@@ -291,7 +302,7 @@ static void act(struct world *w, struct fuzz_supply *s)
 static void check(const struct world *w)
 {
     const struct lm_unit *u = &w->unit;
-    FUZZ_ASSERT(u->picture.sector.command.range_index < lm_radar_default.ranges &&
+    FUZZ_ASSERT(u->picture.sector.command.range_index < u->map.radar->ranges &&
                 u->picture.sector.command.azimuth_index < LM_AZIMUTHS);
     FUZZ_ASSERT(!u->picture.sector.is_begun || u->picture.sector.line < u->picture.sector.lines);
     FUZZ_ASSERT(u->picture.sar.line <= u->picture.sar.lines);
@@ -317,6 +328,7 @@ static void fly(struct world *w, struct fuzz_supply *s)
     FUZZ_ASSERT(parts.glass && parts.plane && parts.tile_pool);
     memory_board_open(&w->board, w->image.bytes, w->image.size, &parts);
     w->board.lent.flash_poll_limit = 20;
+    w->board.lent.radar = NULL; /* the image's, which may be hostile */
     if (lm_unit_init(&w->unit, &w->board.lent) == LM_OK) {
         while (s->left > 0 && w->steps < STEPS_MAX) {
             act(w, s);

@@ -15,6 +15,7 @@ enum {
     DIRECTORY,
     TILES,
     GEOID = 8,
+    RADAR = 10,
     ENTRIES_MAX = 4096
 };
 
@@ -92,6 +93,15 @@ static void seal_packed_records(uint8_t *image, size_t size)
     }
 }
 
+/* The record's own checksum, and then the section's. */
+static void seal_radar(uint8_t *record, size_t bytes)
+{
+    if (bytes > 4) {
+        const uint32_t crc = fx_crc32c(0, record + 4, bytes - 4);
+        memcpy(record, &crc, 4);
+    }
+}
+
 static void seal_section(uint8_t *image, size_t size, uint8_t *entry, unsigned parts)
 {
     const uint64_t type = get(entry, 4), offset = get(entry + 8, 8), bytes = get(entry + 16, 8);
@@ -102,7 +112,11 @@ static void seal_section(uint8_t *image, size_t size, uint8_t *entry, unsigned p
         seal_directory(image + offset, bytes);
     } else if (type == TILES && parts & SEAL_RECORDS) {
         seal_records(image + offset, bytes);
-    } else if ((type == CLASSES || type == BANDS || type == GEOID) && parts & SEAL_TABLES) {
+    } else if ((type == CLASSES || type == BANDS || type == GEOID || type == RADAR) &&
+               parts & SEAL_TABLES) {
+        if (type == RADAR) {
+            seal_radar(image + offset, bytes);
+        }
         const uint32_t crc = fx_crc32c(0, image + offset, bytes);
         memcpy(entry + 4, &crc, 4);
     }
