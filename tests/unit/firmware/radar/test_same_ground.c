@@ -76,19 +76,24 @@ static double correlation_of(const struct sums *s, double *allowed)
     return (s->ab / s->n - mean_a * mean_b) / sqrt(variance_a * variance_b);
 }
 
+static void open_varied(struct tiny_map *map)
+{
+    struct tiny_spec spec = tiny_spec_at(46, 11);
+    spec.cell = varied_cell;
+    spec.shift0 = MAP_CELL_SHIFT;
+    spec.rows = spec.columns = 12;
+    tiny_map_open(map, &spec, POOL_TILES);
+}
+
 /* Of two patches whose ground is aligned, the speckle of each is its own. It takes from the
  * correlation what it adds to the variance: with a spread of the ground of g dB and of the speckle
  * of n dB, g2 / (g2 + n2) is left. A texture that jumped with the patch would take more. */
 TEST(a_patch_asked_for_again_80_m_aside_shows_the_same_bright_places)
 {
     static double here[CELLS][CELLS], aside[CELLS][CELLS];
-    struct tiny_spec spec = tiny_spec_at(46, 11);
     struct tiny_map map;
     struct sums s = {0};
-    spec.cell = varied_cell;
-    spec.shift0 = MAP_CELL_SHIFT;
-    spec.rows = spec.columns = 12;
-    tiny_map_open(&map, &spec, POOL_TILES);
+    open_varied(&map);
     draw_patch(&map, 0, 0, here);
     draw_patch(&map, ASIDE, 0, aside);
     tiny_map_close(&map);
@@ -110,13 +115,9 @@ TEST(a_patch_asked_for_again_80_m_aside_shows_the_same_bright_places)
 TEST(bright_places_stay_where_they_are_over_30_degrees_of_aspect)
 {
     static double here[CELLS][CELLS], turned[CELLS][CELLS];
-    struct tiny_spec spec = tiny_spec_at(46, 11);
     struct tiny_map map;
     struct sums s = {0};
-    spec.cell = varied_cell;
-    spec.shift0 = MAP_CELL_SHIFT;
-    spec.rows = spec.columns = 12;
-    tiny_map_open(&map, &spec, POOL_TILES);
+    open_varied(&map);
     map.db.classes.entry[TINY_STRUCTURE].facing = 1;
     draw_patch(&map, 0, 0, here);
     draw_patch(&map, 0, FX_BAM_DEG(30), turned);

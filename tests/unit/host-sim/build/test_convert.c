@@ -221,6 +221,16 @@ static void assert_same_tile(const struct lm_tile *a, const struct lm_tile *b)
     }
 }
 
+static void assert_report_says(uint64_t bytes, uint64_t tiles)
+{
+    assert_int_equal(
+        support_run("python3 -c 'import json; r = json.load(open(\"%s\"))[\"report\"]; "
+                    "assert r == {\"bytes\": %llu, \"tiles\": %llu, "
+                    "\"fault_count\": 0}, r'",
+                    scene_path("report"), (unsigned long long)bytes, (unsigned long long)tiles),
+        0);
+}
+
 TEST(a_converted_image_is_the_one_that_version_3_would_have_been)
 {
     static const double places[][2] = {{46, 11}, {-46, -70}, {61.875, 20}, {-73.125, 180}};
@@ -232,8 +242,8 @@ TEST(a_converted_image_is_the_one_that_version_3_would_have_been)
         open_tiny(&tiny, &before, places[i][0], places[i][1]);
         const struct old_image old = old_image_of(&before);
         write_bytes("old.lmdb", old.bytes, old.size);
-        const int exit_code =
-            scene_run("convert %s %s", scene_path("old.lmdb"), scene_path("new.lmdb"));
+        const int exit_code = scene_run("convert %s %s --json %s", scene_path("old.lmdb"),
+                                        scene_path("new.lmdb"), scene_path("report"));
         if (exit_code != 0) {
             scene_log_holds("(what it said)");
         }
@@ -243,6 +253,7 @@ TEST(a_converted_image_is_the_one_that_version_3_would_have_been)
         assert_int_equal(image_map(&after, scene_path("new.lmdb")), 0);
         assert_int_equal(image_verify(&after, &findings, &counts), 0);
         assert_int_equal(findings.count, 0);
+        assert_report_says(after.size_bytes, counts.tiles);
         assert_int_equal(after.header.record_count, before.header.record_count);
         assert_int_equal(after.db.target_count, 1);
         assert_int_equal(after.targets[0].id, 7);
