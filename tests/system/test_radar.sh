@@ -58,6 +58,13 @@ check 'with its frequency' said '31228 um are 9.6 GHz, and Ku band is 12 to 18 G
 check 'the scene is built for Ku, with its radar' image ku ku --radar $ku
 check 'and for X, without one' image x x
 check 'every byte of the image is right' exits 0 "$bin/landmass-db" verify "$work/ku.lmdb"
+check 'and verify names sensor and radar' printed '^sensor: KU; radar: KU-1$'
+# A bit of the table, which lies before the manifest.
+cp "$work/ku.lmdb" "$work/damaged.lmdb"
+at=$(LC_ALL=C grep -abo 'KU-1' "$work/ku.lmdb" | head -n 1 | cut -d: -f1)
+printf 'Q' | dd of="$work/damaged.lmdb" bs=1 seek="$at" conv=notrunc 2>/dev/null
+check 'a damaged table is a fault of the image' exits 1 "$bin/landmass-db" verify "$work/damaged.lmdb"
+check 'that is named' printed 'section RADAR: its length or its checksum does not fit it'
 exits 0 "$bin/landmass-db" inspect "$work/ku.lmdb"
 check 'inspect names the sensor' printed '^sensor  *KU$'
 check 'and the radar' printed '^radar  *KU-1$'

@@ -34,6 +34,8 @@ static void report_header(const struct image *image)
     hs_report_text_within("title", h->title, LM_IMAGE_TITLE_BYTES);
     hs_report_put("format_version", h->version);
     hs_report_put("bytes", h->image_bytes);
+    hs_report_put("sensor", lm_sensor_word(h->sensor));
+    hs_report_put("radar", image->has_radar ? image->radar.name : NULL);
     report_position("centre", (int32_t)h->centre_latitude, h->centre_longitude);
     hs_report_put("mean_elevation_m", h->mean_elevation_m_q6 / 64.0);
     hs_report_put("geoid_m", h->geoid_m_q6 / 64.0);

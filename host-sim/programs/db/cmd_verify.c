@@ -5,6 +5,7 @@
 #include "hs/report.h"
 #include "image/codes.h"
 #include "image/verify.h"
+#include "lm/sensor.h"
 
 #include <inttypes.h>
 #include <stdbool.h>
@@ -31,6 +32,14 @@ static void report_counts(const struct image *image, const struct image_findings
     hs_report_put("tiles", n->tiles);
     hs_report_put("shared_edges", n->edges);
     hs_report_put("tiles_against_level_above", n->children);
+}
+
+static void print_radar(const struct image *image)
+{
+    printf("sensor: %s; radar: %s\n", lm_sensor_word(image->header.sensor),
+           image->has_radar ? image->radar.name : "the display's own");
+    hs_report_put("sensor", lm_sensor_word(image->header.sensor));
+    hs_report_put("radar", image->has_radar ? image->radar.name : NULL);
 }
 
 int db_cmd_verify(int argc, char **argv)
@@ -65,6 +74,7 @@ int db_cmd_verify(int argc, char **argv)
         image_heights_text(image.db.classes.height_dm, heights, sizeof heights);
         printf("heights of the codes, m:%s\n", heights);
         image_heights_report(image.db.classes.height_dm);
+        print_radar(&image);
     }
     image_close(&image);
     if (findings.count > 0) {
