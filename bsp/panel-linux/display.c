@@ -99,6 +99,7 @@ static int acquire(void *ctx, struct lm_surface *surface)
         return LM_BUSY;
     }
     *surface = g->picture;
+    surface->age = g->count.pictures > 0; /* one buffer, which the devices copy */
     return LM_OK;
 }
 
