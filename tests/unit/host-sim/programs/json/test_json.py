@@ -428,6 +428,14 @@ def writes_only(program, command, *arguments):
     return document
 
 
+def kept(r, text):
+    gaps, limit, jumps, holds, alone = find(r"^kept as they are: (\d+) gaps \(over (\S+) s\), (\d+) jumps .*, (\d+) repeated positions, (\d+) fixes", text)
+    assert [r["gaps"], r["jumps"], r["repeated_positions"], r["isolated_fixes"]] == [gaps, jumps, holds, alone]
+    assert near(r["gap_limit_s"], limit, 0.01)
+    span, interval = find(r"^track: \d+ fixes over (\S+) s, median interval (\S+) s", text)
+    assert near(r["span_s"], span, 0.1) and near(r["median_interval_s"], interval, 0.01)
+
+
 def nav():
     document, text = run("nav", "--straight", "42.045,-29.18,90,3000,180", "--seconds", "20", "--out", here("flight.log"))
     r = document["report"]
@@ -437,10 +445,16 @@ def nav():
     assert near(r["active_s"], active, 0.1) and [r["fixes"]] == find(r"^track: (\d+) fixes", text)
     shown = find(r"^left out: (\d+) malformed, (\d+) out of order, (\d+) without a position, (\d+) repeated in motion, (\d+) bar", text)
     assert list(r["left_out"].values()) == shown
+    kept(r, text)
     with open(here("bad.csv"), "w") as file:
         file.write("timestamp,latitude,longitude,altitude_m\n0,42,-29,3000\n1,42.001,-29,3000\nx,1,1,1\n2,42.002,-29,3000\n")
     r = run("nav", here("bad.csv"), "--out", here("bad.log"))[0]["report"]
     assert r["fixes"] == 3 and r["left_out"]["malformed"] == 1 and r["height_datum"], r
+    recorded = os.path.join(os.environ.get("LANDMASS_DATA", "../shared/data"), "nav_tracks/zero_gravity.csv.gz")
+    if os.path.exists(recorded):
+        document, text = run("nav", recorded, "--out", here("zero.log"), "--seconds", "30")
+        kept(document["report"], text)
+        assert document["report"]["jumps"] > 0 and document["report"]["left_out"]["repeated_in_motion"] > 0
 
 
 def bus_decode():
