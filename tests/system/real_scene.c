@@ -4,6 +4,7 @@
 #include "hs/angle.h"
 #include "lm/db.h"
 #include "lm/scan_conv.h"
+#include "lm/tile_unpack.h"
 #include "support.h"
 
 #include <gdal.h>
@@ -221,6 +222,25 @@ static int read_flash(const struct lm_flash *flash, uint64_t offset, void *to, u
     return status == LM_OK ? 0 : -1;
 }
 
+/* The tile of a directory entry, unpacked. False when it cannot be read. */
+static bool read_tile(const struct lm_db *db, const struct lm_tile_entry *e, struct lm_tile *tile)
+{
+    struct lm_tile_unpack unpack;
+    const uint32_t bytes = (uint32_t)LM_DB_PLACE_BYTES * e->size;
+    if (read_flash(db->flash, lm_db_tile_offset(db, e), lm_tile_unpack_place(tile, e->size),
+                   bytes) != 0) {
+        return false;
+    }
+    if (e->encoding == LM_TILE_RAW) {
+        return true;
+    }
+    int status = lm_tile_unpack_begin(&unpack, tile, e->size);
+    while (status == LM_BUSY) {
+        status = lm_tile_unpack_run(&unpack);
+    }
+    return status == LM_OK;
+}
+
 /* The class index, or LM_DB_CLASS_NONE. */
 static unsigned class_at(const struct lm_db *db, struct real_place place)
 {
@@ -236,8 +256,7 @@ static unsigned class_at(const struct lm_db *db, struct real_place place)
     if (entry < 0 ||
         read_flash(db->flash, lm_db_entry_offset(db, (uint32_t)entry), &e, sizeof e) != 0 ||
         lm_db_entry_check(db, (uint32_t)entry, &e) != LM_OK || e.place == LM_TILE_ABSENT ||
-        read_flash(db->flash, lm_db_tile_offset(db, &e), &tile, sizeof tile) != 0 ||
-        lm_tile_check(&tile, 0, row, column) != LM_OK) {
+        !read_tile(db, &e, &tile) || lm_tile_check(&tile, 0, row, column) != LM_OK) {
         return LM_DB_CLASS_NONE;
     }
     const uint32_t r = latitude >> down & (LM_TILE_CELLS - 1);
