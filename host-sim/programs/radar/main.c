@@ -4,6 +4,7 @@
 #include "hs/input_file.h"
 #include "hs/menu.h"
 #include "hs/options.h"
+#include "hs/report.h"
 #include "image/reader.h"
 #include "lm/radar_record.h"
 #include "lm/sensor.h"
@@ -98,6 +99,9 @@ static int run_check(int argc, char **argv)
     if (radar_text_read(&radar, path) != 0) {
         return HS_EXIT_FAILED;
     }
+    hs_report_put("name", radar.name);
+    hs_report_put("band", lm_sensor_word(radar.sensor));
+    hs_report_put("scales", radar.ranges);
     printf("%s: radar %s, band %s, %u scales: no faults\n", path, radar.name,
            lm_sensor_word(radar.sensor), radar.ranges);
     return HS_EXIT_OK;
