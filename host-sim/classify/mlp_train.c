@@ -198,10 +198,11 @@ struct trainer {
     float *gradient, *velocity, *best, *mean;
     struct hs_rng rng;
     double rate, momentum, noise; /* as they are by now */
-    double best_score, best_rms;  /* of the weights in `best` */
-    double mark_score, mark_rms;  /* where progress was last made */
-    int score_epoch, rms_epoch;   /* when */
-    int actions;                  /* cures tried on these weights */
+    double decay;
+    double best_score, best_rms; /* of the weights in `best` */
+    double mark_score, mark_rms; /* where progress was last made */
+    int score_epoch, rms_epoch;  /* when */
+    int actions;                 /* cures tried on these weights */
     int redraws_left;
     bool was_high; /* the error of the exemplar presented last */
 };
@@ -224,6 +225,8 @@ static int trainer_init(struct trainer *t)
     t->rate = t->options->rate;
     t->momentum = t->options->momentum;
     t->noise = t->options->noise;
+    t->decay =
+        isnan(t->options->decay) ? db_default_decay(size, t->training->count) : t->options->decay;
     t->best_score = t->mark_score = -1;
     t->best_rms = t->mark_rms = INFINITY;
     t->redraws_left = t->options->redraws;
@@ -261,11 +264,17 @@ static void fill_batch(struct trainer *t, size_t at, int count)
     }
 }
 
+double db_default_decay(size_t weights, size_t exemplars)
+{
+    const double full = 0.6; /* weights for each exemplar from which on it is the most */
+    return DB_DECAY_MOST * fmin(1, (double)weights / (double)exemplars / full);
+}
+
 static void change_weights(struct trainer *t)
 {
     const size_t size = db_mlp_size(t->net);
     const float rate = (float)t->rate, momentum = (float)t->momentum;
-    const float decay = (float)t->options->decay;
+    const float decay = (float)t->decay;
     for (size_t i = 0; i < size; i++) {
         t->velocity[i] =
             momentum * t->velocity[i] - rate * (t->gradient[i] + decay * t->net->weights[i]);

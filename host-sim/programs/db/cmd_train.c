@@ -63,6 +63,7 @@ static const struct options defaults = {
     .rate = 0.1,
     .momentum = 0.9,
     .noise = 0.005,
+    .decay = NAN,
     .goal = 0.99,
 };
 
@@ -130,7 +131,11 @@ static bool read_options(struct options *o, int argc, char **argv, int *exit_cod
         {"rate", HS_REAL, &o->rate, 1e-6, 10, "X", "Learning rate.", false},
         {"momentum", HS_REAL, &o->momentum, 0, 0.999, "X",
          "Part of a change of weights that is carried on.", false},
-        {"decay", HS_REAL, &o->decay, 0, 1, "X", "Pull of the weights towards zero.", false},
+        {"decay", HS_REAL, &o->decay, 0, 1, "X",
+         "Pull of the weights towards zero. Left out: 0 for few weights, up to 0.00005 where there "
+         "are "
+         "about as many as exemplars.",
+         false},
         {"batch", HS_INTEGER, &o->batch, 1, 65536, "N", "Exemplars between two changes of weights.",
          false},
         {"thin", HS_REAL, &o->thin, 0, 10, "X",

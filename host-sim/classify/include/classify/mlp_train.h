@@ -11,7 +11,8 @@ enum { DB_EPOCHS_MAX = 10000, DB_EVENTS_MAX = 64 };
 struct db_train_options {
     double rate;     /* of learning, > 0 */
     double momentum; /* 0..1, exclusive of 1 */
-    double decay;    /* of the weights: part of a weight taken from its gradient, >= 0 */
+    double decay;    /* of the weights: part of a weight taken from its gradient, >= 0; NaN:
+                      * db_default_decay */
     double noise;    /* standard deviation of the noise, in deviations of each input */
     double goal;     /* recognition (struct db_epoch) that a plateau must have to be no minimum */
     int batch;       /* exemplars between two changes of weights */
@@ -20,6 +21,12 @@ struct db_train_options {
     int redraws;     /* how often the weights may be drawn anew, >= 0 */
     uint64_t seed;
 };
+
+/* Decay for a network of so many weights and so many exemplars, >= 1. A network of few weights
+ * needs none; one that could learn its exemplars by heart needs DB_DECAY_MOST (docs/classifier.md,
+ * "Measured"). Between them it grows with the weights for each exemplar. UNSOURCED. */
+#define DB_DECAY_MOST 5e-5
+double db_default_decay(size_t weights, size_t exemplars);
 
 /* Inputs are normalised; targets are output indices. */
 struct db_train_data {

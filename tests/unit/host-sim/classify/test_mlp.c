@@ -329,6 +329,45 @@ TEST(two_hidden_layers_learn_what_one_learns)
     db_mlp_free(&net);
 }
 
+/* ---- Decay ---- */
+
+/* Train on a chess board; the sum of the squares of the weights. */
+static double trained_norm(double decay)
+{
+    const struct problem p = chess_board(1);
+    struct db_mlp net = shape(2, 12, 2, DB_LOSS_SQUARE);
+    struct db_train_options options = train_options();
+    struct db_train_report report;
+    options.decay = decay;
+    options.epochs = 60;
+    options.goal = 1.01;
+    train(&net, &p, &options, &report);
+    double norm = 0;
+    for (size_t i = 0; i < db_mlp_size(&net); i++) {
+        norm += (double)(net.weights[i] * net.weights[i]);
+    }
+    db_train_report_free(&report);
+    db_mlp_free(&net);
+    return norm;
+}
+
+TEST(decay_keeps_weights_small_and_left_out_it_is_the_default)
+{
+    struct db_mlp net = shape(2, 12, 2, DB_LOSS_SQUARE);
+    const double rule = db_default_decay(db_mlp_size(&net), EXEMPLARS);
+    assert_true(trained_norm(1e-3) < 0.8 * trained_norm(0));
+    assert_true(trained_norm(NAN) == trained_norm(rule));
+    assert_true(trained_norm(NAN) != trained_norm(2 * rule));
+}
+
+TEST(the_default_decay_grows_with_the_weights_for_each_exemplar_and_ends)
+{
+    assert_true(db_default_decay(100, 11200) < 1e-6); /* three bands: next to none */
+    assert_true(db_default_decay(6788, 11200) == DB_DECAY_MOST);
+    assert_true(db_default_decay(26000, 5000) == DB_DECAY_MOST);
+    assert_true(db_default_decay(820, 4000) > db_default_decay(820, 8000));
+}
+
 /* ---- Priors ---- */
 
 /* Two classes of one deviation whose means lie `2` apart: the best border by the theory of normal
