@@ -105,13 +105,18 @@ static int acquire(void *ctx, struct lm_surface *surface)
 
 static int present(void *ctx, const struct lm_damage *changed)
 {
-    (void)changed;
     struct glass *g = ctx;
+    const bool is_dark = g->kind != GLASS_DRM || g->drm.state == DRV_DRM_DARK;
+    int status = LM_OK;
     g->count.pictures++;
-    if (g->kind == GLASS_DRM && g->drm.state != DRV_DRM_DARK) {
-        return drv_drm_present(&g->drm, &g->picture, g->now_us);
+    if (g->kind == GLASS_DRM) {
+        status = drv_drm_present(&g->drm, &g->picture, changed, g->now_us);
+    } else if (g->kind == GLASS_FBDEV) {
+        status = drv_fbdev_present(&g->fbdev, &g->picture);
     }
-    const int status = g->kind == GLASS_FBDEV ? drv_fbdev_present(&g->fbdev, &g->picture) : LM_OK;
+    if (!is_dark) {
+        return status; /* a flip counts when it is done */
+    }
     g->count.renders += status == LM_OK;
     return status;
 }

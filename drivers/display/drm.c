@@ -77,6 +77,7 @@ static int make_buffer(struct drv_drm *d, struct drv_drm_buffer *b, uint16_t wid
     b->size_bytes = make.size;
     b->target = (struct drv_target){bytes, make.pitch, width, height, d->config.format};
     drv_blit_clear(&b->target);
+    memset(&b->lacks, 0xff, sizeof b->lacks); /* all of the picture */
     return LM_OK;
 }
 
@@ -279,15 +280,21 @@ void drv_drm_service(struct drv_drm *d, uint64_t now_us)
     }
 }
 
-int drv_drm_present(struct drv_drm *d, const struct lm_surface *picture, uint64_t now_us)
+int drv_drm_present(struct drv_drm *d, const struct lm_surface *picture,
+                    const struct lm_damage *changed, uint64_t now_us)
 {
+    struct drv_drm_buffer *const back = &d->buffer[d->front ^ 1];
+    for (int i = 0; i < DRV_DRM_BUFFERS; i++) {
+        lm_damage_add(&d->buffer[i].lacks, changed);
+    }
     if (d->state == DRV_DRM_DARK) {
         return LM_OK;
     }
     if (d->state != DRV_DRM_IDLE) {
         return LM_BUSY;
     }
-    drv_blit(&d->buffer[d->front ^ 1].target, picture, d->config.turn);
+    drv_blit(&back->target, picture, d->config.turn, &back->lacks);
+    lm_damage_clear(&back->lacks);
     d->state = DRV_DRM_DUE;
     d->since_us = now_us;
     return flip(d, now_us);

@@ -83,7 +83,7 @@ int drv_fbdev_present(struct drv_fbdev *f, const struct lm_surface *picture)
     struct drv_target to = f->target;
     const uint32_t next = f->can_pan ? f->shown ^ 1 : 0;
     to.bytes = (char *)f->bytes + (size_t)next * to.height_px * to.stride_bytes;
-    drv_blit(&to, picture, f->turn);
+    drv_blit(&to, picture, f->turn, NULL);
     f->count.pictures++;
     if (f->can_pan) {
         struct fb_var_screeninfo v;

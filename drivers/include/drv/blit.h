@@ -5,6 +5,7 @@
 
 #include <stdint.h>
 
+#include "lm/damage.h"
 #include "lm/port.h"
 
 enum drv_format {
@@ -23,10 +24,12 @@ struct drv_target {
     enum drv_format format;
 };
 
-/* Copy the picture to the middle of the target. A larger picture is cut equally on both sides, with
+/* Copy the picture to the middle of the target: the blocks of *changed, which is borrowed for the
+ * call, or all of it for NULL. A larger picture is cut equally on both sides, with
  * an odd pixel at the right and at the bottom. A smaller one leaves a border, which is not
  * changed. */
-void drv_blit(const struct drv_target *to, const struct lm_surface *from, enum drv_turn turn);
+void drv_blit(const struct drv_target *to, const struct lm_surface *from, enum drv_turn turn,
+              const struct lm_damage *changed);
 
 /* Make the whole target black. */
 void drv_blit_clear(const struct drv_target *to);

@@ -37,6 +37,7 @@ struct drv_drm_buffer {
     uint32_t handle, framebuffer; /* names that the kernel gave; 0: none */
     size_t size_bytes;
     struct drv_target target;
+    struct lm_damage lacks; /* blocks that changed since the buffer was drawn */
 };
 
 struct drv_drm {
@@ -81,10 +82,12 @@ void drv_drm_close(struct drv_drm *d);
  * Never waits, except some 10 ms when a screen is plugged in: the kernel reads its description. */
 void drv_drm_service(struct drv_drm *d, uint64_t now_us);
 
-/* Copy the picture and ask for the flip. Returns
+/* Copy what the buffer lacks of the picture and ask for the flip. The picture differs from that of
+ * the call before within the blocks of *changed, whatever that call returned. Returns
  * - LM_OK: taken; or dropped, because the state is dark;
  * - LM_BUSY: the last picture is not shown yet, and this one was not taken;
  * - LM_ERR_IO: the kernel refused the flip. */
-int drv_drm_present(struct drv_drm *d, const struct lm_surface *picture, uint64_t now_us);
+int drv_drm_present(struct drv_drm *d, const struct lm_surface *picture,
+                    const struct lm_damage *changed, uint64_t now_us);
 
 #endif

@@ -610,17 +610,18 @@ void lm_k_tile_blend(const struct lm_k_blend *map, const struct lm_tile_coords *
     const struct neon_map look_up = neon_map_of(map);
     struct neon_track north_track = neon_track_from(&places->north, first);
     struct neon_track east_track = neon_track_from(&places->east, first);
-    struct neon_turn turn = {
-        .cell = cell + first, .elevation = (uint32_t *)elevation_m_q14 + first, .next = LM_LANES};
+    struct neon_places at;
+    struct neon_turn turn = {.at = &at,
+                             .cell = cell + first,
+                             .elevation = (uint32_t *)elevation_m_q14 + first,
+                             .next = LM_LANES};
     for (const uint32_t *const end = turn.cell + groups * LM_LANES; turn.cell < end;
          turn.cell += PLACES, turn.elevation += PLACES) {
-        struct neon_places at;
         for (size_t h = 0; h < 4; h++) {
             at.north[h] = neon_next(&north_track);
             at.east[h] = neon_next(&east_track);
         }
         turn.next = turn.cell + LM_LANES == end ? 0 : LM_LANES;
-        turn.at = &at;
         neon_blend(&look_up, turn);
     }
 }

@@ -1,6 +1,7 @@
 /* Every pixel of every rotation, against the plain statement of what a rotation is. */
 #include "check.h"
 #include "drv/blit.h"
+#include "hs/rng.h"
 
 #include <string.h>
 
@@ -62,7 +63,7 @@ static void check(uint16_t width, uint16_t height, uint16_t to_width, uint16_t t
             }
         }
     }
-    drv_blit(&to, &from, turn);
+    drv_blit(&to, &from, turn, NULL);
     assert_memory_equal(target, expected, sizeof target);
 }
 
@@ -96,13 +97,13 @@ TEST(rgb565_keeps_the_upper_bits_of_each_colour)
     const struct lm_surface from = {
         .pixels = pixels, .stride_px = 256, .width_px = 256, .height_px = 1};
     const struct drv_target to = {target, sizeof target, 256, 1, DRV_RGB565};
-    drv_blit(&to, &from, DRV_TURN_0);
+    drv_blit(&to, &from, DRV_TURN_0, NULL);
     for (uint32_t i = 0; i < 256; i++) {
         assert_int_equal(target[i] >> 11, i / 8);
         assert_int_equal(target[i] >> 5 & 63, (255 - i) / 4);
         assert_int_equal(target[i] & 31, (i ^ 0x55) / 8);
     }
-    drv_blit(&to, &from, DRV_TURN_180);
+    drv_blit(&to, &from, DRV_TURN_180, NULL);
     assert_int_equal(target[255] >> 11, 0);
     assert_int_equal(target[0] >> 11, 31);
 }
@@ -116,4 +117,53 @@ TEST(clearing_leaves_what_lies_beyond_the_rows)
     for (int i = 0; i < 8 * 4; i++) {
         assert_int_equal(target[i], i % 8 < 5 ? 0 : 0xffff);
     }
+}
+
+/* Two pictures that differ in some blocks, on panels that cut them or leave a border: copying the
+ * blocks is as good as copying all. */
+TEST(the_blocks_that_changed_are_enough_in_every_turn)
+{
+    enum { LARGE = 60, ROOM = 80 };
+    static uint32_t pixels[LARGE * LARGE], part[ROOM * ROOM], whole[ROOM * ROOM];
+    struct hs_rng rng;
+    hs_rng_seed(&rng, 4);
+    for (int n = 0; n < 400; n++) {
+        const enum drv_turn turn = (enum drv_turn)(n % 4);
+        const uint16_t width = (uint16_t)(30 + hs_rng_below(&rng, 30)),
+                       height = (uint16_t)(30 + hs_rng_below(&rng, 30));
+        const struct lm_surface from = {
+            .pixels = pixels, .stride_px = LARGE, .width_px = width, .height_px = height};
+        struct drv_target to = {part, ROOM * 4, (uint16_t)(30 + hs_rng_below(&rng, 50)),
+                                (uint16_t)(30 + hs_rng_below(&rng, 50)), DRV_XRGB8888};
+        struct lm_damage changed = {{0}};
+        drv_blit(&to, &from, turn, NULL);
+        for (int k = 0; k < 5; k++) {
+            const int32_t x = (int32_t)hs_rng_below(&rng, width),
+                          y = (int32_t)hs_rng_below(&rng, height);
+            pixels[y * LARGE + x] = (uint32_t)n << 8 | (uint32_t)k;
+            lm_damage_mark(&changed, &(struct lm_rectangle){x, y, x + 1, y + 1});
+        }
+        drv_blit(&to, &from, turn, &changed);
+        memcpy(whole, part, sizeof whole);
+        to.bytes = whole;
+        drv_blit(&to, &from, turn, NULL);
+        assert_memory_equal(part, whole, sizeof whole);
+    }
+}
+
+TEST(what_did_not_change_is_not_touched)
+{
+    static uint32_t pixels[64 * 64], target[64 * 64];
+    const struct lm_surface from = {
+        .pixels = pixels, .stride_px = 64, .width_px = 64, .height_px = 64};
+    const struct drv_target to = {target, 64 * 4, 64, 64, DRV_XRGB8888};
+    struct lm_damage changed = {{0}};
+    memset(target, 0x5a, sizeof target);
+    lm_damage_mark(&changed, &(struct lm_rectangle){20, 20, 21, 21});
+    drv_blit(&to, &from, DRV_TURN_90, &changed);
+    int touched = 0;
+    for (int i = 0; i < 64 * 64; i++) {
+        touched += target[i] != BORDER;
+    }
+    assert_int_equal(touched, LM_BLOCK_WIDTH_PX * LM_BLOCK_HEIGHT_PX);
 }

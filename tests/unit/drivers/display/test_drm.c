@@ -2,6 +2,7 @@
 #include "check.h"
 #include "drv/drm.h"
 #include "fake_drm.h"
+#include "hs/rng.h"
 
 #include <errno.h>
 #include <string.h>
@@ -32,7 +33,9 @@ static int show(struct rig *r, uint32_t colour)
     for (int i = 0; i < WIDTH * HEIGHT; i++) {
         r->pixels[i] = colour;
     }
-    return drv_drm_present(&r->drm, &r->picture, r->now_us);
+    struct lm_damage all = {{0}};
+    lm_damage_mark(&all, &(struct lm_rectangle){0, 0, WIDTH, HEIGHT});
+    return drv_drm_present(&r->drm, &r->picture, &all, r->now_us);
 }
 
 static void wait_us(struct rig *r, uint64_t us)
@@ -67,6 +70,65 @@ TEST(each_picture_comes_on_the_screen_with_one_flip)
     }
     assert_int_equal(r.drm.count.flips, 100);
     assert_int_equal(fake_drm.modes_set, 1);
+    drv_drm_close(&r.drm);
+}
+
+/* Whether the screen shows the picture of the rig, in its middle. */
+static bool shows_picture(const struct rig *r)
+{
+    const struct fake_drm_buffer *b = &fake_drm.buffer[fake_drm.handle_of_shown - 1];
+    const size_t row_words = b->size / b->height / sizeof *b->pixels;
+    const size_t left = (b->width - WIDTH) / 2u, top = (b->height - HEIGHT) / 2u;
+    for (size_t y = 0; y < HEIGHT; y++) {
+        if (memcmp(b->pixels + (top + y) * row_words + left, r->pixels + y * WIDTH,
+                   WIDTH * sizeof *r->pixels) != 0) {
+            return false;
+        }
+    }
+    return true;
+}
+
+/* Change a few rectangles and present that. Pictures come while the last is on its way, and while
+ * the screen is away; whenever one is taken and shown, it is whole. */
+TEST(what_changed_is_copied_into_both_buffers_and_nothing_is_forgotten)
+{
+    static struct rig r;
+    struct hs_rng rng;
+    hs_rng_seed(&rng, 21);
+    set_up(&r, &standard);
+    uint32_t shown = 0;
+    for (uint32_t n = 0; n < 600; n++) {
+        struct lm_damage changed = {{0}};
+        for (uint32_t k = hs_rng_below(&rng, 4); k > 0; k--) {
+            const int32_t left = (int32_t)hs_rng_below(&rng, WIDTH),
+                          top = (int32_t)hs_rng_below(&rng, HEIGHT);
+            const struct lm_rectangle part = {left, top, left + 1 + (int32_t)hs_rng_below(&rng, 9),
+                                              top + 1 + (int32_t)hs_rng_below(&rng, 9)};
+            for (int32_t y = top; y < part.bottom && y < HEIGHT; y++) {
+                for (int32_t x = left; x < part.right && x < WIDTH; x++) {
+                    r.pixels[y * WIDTH + x] = n * 7919;
+                }
+            }
+            lm_damage_mark(&changed, &part);
+        }
+        const bool is_away = n % 100 >= 40 && n % 100 < 60;
+        fake_drm.has_screen = !is_away;
+        const int status = drv_drm_present(&r.drm, &r.picture, &changed, r.now_us);
+        const bool is_taken = status == LM_OK && r.drm.state != DRV_DRM_DARK;
+        if (hs_rng_below(&rng, 3) != 0) {
+            fake_drm_blank();
+            wait_us(&r, TICK_US);
+            if (is_taken && r.drm.state == DRV_DRM_IDLE && !is_away) {
+                assert_true(shows_picture(&r));
+                shown++;
+            }
+        }
+        if (n % 20 == 0) {
+            wait_us(&r, 1100000); /* a screen that comes or goes is noticed */
+        }
+    }
+    print_message("# %u pictures shown\n", shown);
+    assert_true(shown > 100 && r.drm.count.lit > 2);
     drv_drm_close(&r.drm);
 }
 
@@ -193,7 +255,8 @@ TEST(a_screen_that_comes_later_than_the_program_is_lit)
     static struct rig r;
     fake_drm_reset();
     fake_drm.has_screen = false;
-    r.picture = (struct lm_surface){r.pixels, WIDTH, WIDTH, HEIGHT};
+    r.picture = (struct lm_surface){
+        .pixels = r.pixels, .stride_px = WIDTH, .width_px = WIDTH, .height_px = HEIGHT};
     r.now_us = 0;
     assert_int_equal(drv_drm_open(&r.drm, &standard, 0), LM_OK);
     assert_int_equal(r.drm.state, DRV_DRM_DARK);
