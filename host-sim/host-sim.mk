@@ -35,6 +35,7 @@ $(call host_program, sim,       sim radar lib fixed firmware drivers bench)
 $(call host_program, tables,    tables lib)
 $(call host_program, figures,   lib fixed firmware)
 $(call host_generator, bus_table, bus lib fixed firmware drivers)
+HOST_TOOLS := $(patsubst %,$(O)/bin/landmass-%,$(filter-out bus_table,$(HOST_PROGRAMS)))
 
 # Tests may include the public headers of every library.
 INC_host += $(foreach l,$(HOST_LIBS),-Ihost-sim/$l/include)
@@ -49,5 +50,5 @@ $(VECTOR_LOOPS:%=$(O)/host-sim/%.o): EXTRA_CFLAGS := -O3 -fno-math-errno -fno-tr
 
 # The Debian package of the tools. HAS_AVX2= on the command line makes programs for any processor of this kind.
 .PHONY: tools-package
-tools-package: $(patsubst %,$(O)/bin/landmass-%,$(filter-out bus_table,$(HOST_PROGRAMS)))
+tools-package: $(HOST_TOOLS)
 	@sh host-sim/package/build.sh $(O)/bin build/packages

@@ -266,8 +266,9 @@ static void fill_batch(struct trainer *t, size_t at, int count)
 
 double db_default_decay(size_t weights, size_t exemplars)
 {
-    const double full = 0.6; /* weights for each exemplar from which on it is the most */
-    return DB_DECAY_MOST * fmin(1, (double)weights / (double)exemplars / full);
+    const double none = 0.3, full = 0.6; /* weights for each exemplar */
+    const double part = ((double)weights / (double)exemplars - none) / (full - none);
+    return DB_DECAY_MOST * fmax(0, fmin(1, part));
 }
 
 static void change_weights(struct trainer *t)

@@ -111,7 +111,7 @@ check 'shows that it has none' between 100 100000 "$(warnings "$work/no-bus/fram
 check 'a missing database fails' exits 1 "$sim" --db "$work/nosuch.lmdb" --bus "$log"
 check 'and is named with its cause and remedy' said 'nosuch.lmdb: cannot be opened: No such file.*; landmass-db build'
 head -c 3000000 "$db" >"$work/cut.lmdb"
-check 'a truncated database is flown' exits 0 "$sim" --db "$work/cut.lmdb" --bus "$log" --seconds 1 --png "$work/cut"
+check 'a truncated database is flown' exits 0 "$sim" --db "$work/cut.lmdb" --bus "$log" --seconds 1.2 --png "$work/cut"
 check 'with a warning that names it' said 'cut.lmdb: warning: is no usable flash image; landmass-db verify'
 check 'a summary that says so' printed 'database: not usable'
 check 'and on the glass' between 100 100000 "$(warnings "$work/cut/frame-00030.png")"

@@ -118,5 +118,5 @@ $(eval $(call unit_script,host-sim/programs/json/test_json.py))
 $(eval $(call unit_script,host-sim/programs/progress/test_progress.py))
 $(UNIT)/bsp/panel-linux/test_package: $(PANEL) $(wildcard bsp/panel-linux/debian/*)
 $(UNIT)/host-sim/package/test_package: $(PROGRAMS) $(wildcard host-sim/package/*)
-$(UNIT)/host-sim/programs/json/test_json $(UNIT)/host-sim/programs/progress/test_progress: | $(HOST_PROGRAMS:%=$(O)/bin/landmass-%)
+$(UNIT)/host-sim/programs/json/test_json $(UNIT)/host-sim/programs/progress/test_progress: | $(HOST_TOOLS)
 $(UNIT)/host-sim/programs/bus/test_forms: | $(O)/bin/landmass-bus $(GEN)/bin/bus_table

@@ -22,9 +22,9 @@ struct db_train_options {
     uint64_t seed;
 };
 
-/* Decay for a network of so many weights and so many exemplars, >= 1. A network of few weights
- * needs none; one that could learn its exemplars by heart needs DB_DECAY_MOST (docs/classifier.md,
- * "Measured"). Between them it grows with the weights for each exemplar. UNSOURCED. */
+/* Decay for a network of so many weights and so many exemplars, >= 1. Up to 0.3 weights for each
+ * exemplar it needs none; from 0.6 on, where it could learn its exemplars by heart, it gets
+ * DB_DECAY_MOST (docs/classifier.md, "Measured"). UNSOURCED. */
 #define DB_DECAY_MOST 5e-5
 double db_default_decay(size_t weights, size_t exemplars);
 
