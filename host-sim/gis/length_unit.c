@@ -68,7 +68,8 @@ int db_band_unit(GDALRasterBandH band, const char *path, const char *option, dou
     if (!name[0] || db_length_unit(name, metres)) {
         return 0;
     }
-    snprintf(remedy, sizeof remedy, "name the unit with %s", option);
+    snprintf(remedy, sizeof remedy, "name the unit %s%s",
+             option ? "with " : "in the file, as gdal_edit.py -units m does", option ? option : "");
     return hs_error(path, remedy,
                     "its values are in `%s`, which is no unit of length that is known", name);
 }

@@ -1,5 +1,7 @@
 #include "cast_shadow.h"
 
+#include "gis/length_unit.h"
+#include "gis/plausible.h"
 #include "hs/error.h"
 
 #include <math.h>
@@ -24,17 +26,30 @@ static int add_terrain(struct cast_shadow *s, struct ground_slope *terrain)
     return 0;
 }
 
-static int add_heights(struct cast_shadow *s, const struct db_grid *grid, const char *path)
+/* Check the raster of heights. `metres` becomes its unit. */
+static int check_heights(const struct db_raster *r, const struct cast_shadow_of *of, double *metres)
 {
+    if (r->band_count != 1 || !db_grid_is_same(&r->grid, &of->classes->grid)) {
+        return hs_error(of->heights, "bring it onto the grid of the class raster with gdalwarp",
+                        "has %d bands, or lies on another grid than the class raster",
+                        r->band_count);
+    }
+    const GDALRasterBandH band = r->bands[0].handle;
+    return db_band_unit(band, of->heights, NULL, metres) != 0
+               ? -1
+               : db_plausible_heights(band, of->heights, *metres, of->classes->bands[0].handle,
+                                      of->is_trusted);
+}
+
+static int add_heights(struct cast_shadow *s, const struct cast_shadow_of *of)
+{
+    const char *const path = of->heights;
     struct db_raster r;
+    double metres = 1;
     if (db_raster_open_one(&r, path) != 0) {
         return -1;
     }
-    int result =
-        r.band_count == 1 && db_grid_is_same(&r.grid, grid)
-            ? 0
-            : hs_error(path, "bring it onto the grid of the class raster with gdalwarp",
-                       "has %d bands, or lies on another grid than the class raster", r.band_count);
+    int result = check_heights(&r, of, &metres);
     const size_t count = (size_t)ROWS * (size_t)s->width;
     float *block = malloc(count * sizeof *block);
     uint8_t *valid = malloc(count);
@@ -42,7 +57,8 @@ static int add_heights(struct cast_shadow *s, const struct db_grid *grid, const 
         const int rows = y + ROWS < s->height ? ROWS : s->height - y;
         result = db_raster_read(&r, y, rows, block, valid);
         for (size_t i = 0; i < (size_t)rows * (size_t)s->width; i++) {
-            s->tops[(size_t)y * (size_t)s->width + i] += valid[i] ? fmaxf(block[i], 0) : 0;
+            s->tops[(size_t)y * (size_t)s->width + i] +=
+                valid[i] ? fmaxf(block[i] * (float)metres, 0) : 0;
         }
     }
     const bool has_memory = block && valid;
@@ -52,9 +68,10 @@ static int add_heights(struct cast_shadow *s, const struct db_grid *grid, const 
     return has_memory ? result : hs_error(path, NULL, "out of memory");
 }
 
-int cast_shadow_open(struct cast_shadow *s, const struct db_grid *grid,
-                     struct ground_slope *terrain, const char *heights, const double pixel_m[2])
+int cast_shadow_open(struct cast_shadow *s, const struct cast_shadow_of *of,
+                     const double pixel_m[2])
 {
+    const struct db_grid *const grid = &of->classes->grid;
     const size_t count = (size_t)grid->width * (size_t)grid->height;
     *s = (struct cast_shadow){
         .width = grid->width, .height = grid->height, .east_m = pixel_m[0], .south_m = pixel_m[1]};
@@ -67,8 +84,8 @@ int cast_shadow_open(struct cast_shadow *s, const struct db_grid *grid,
     if (!s->tops) {
         return hs_error("--shadows", "cut the class raster", "out of memory");
     }
-    if ((terrain && add_terrain(s, terrain) != 0) ||
-        (heights && add_heights(s, grid, heights) != 0)) {
+    if ((of->terrain && add_terrain(s, of->terrain) != 0) ||
+        (of->heights && add_heights(s, of) != 0)) {
         return -1;
     }
     s->highest = -INFINITY;

@@ -17,12 +17,20 @@ struct cast_shadow {
     int sun_count;
 };
 
-/* Take the elevations of `terrain`, which may be NULL, and of what stands on it, from the file
- * `heights` on the same grid, which may be NULL. `pixel_m` is that of a pixel towards east and
- * south. Returns 0, or -1 with the error reported: a file cannot be read or lies on another grid,
- * the grid has more than SHADOW_PIXELS_MAX, or there is no memory. */
-int cast_shadow_open(struct cast_shadow *s, const struct db_grid *grid,
-                     struct ground_slope *terrain, const char *heights, const double pixel_m[2]);
+/* What casts shadows on the pixels of a class raster. */
+struct cast_shadow_of {
+    const struct db_raster *classes;
+    struct ground_slope *terrain; /* NULL: level */
+    const char *heights;          /* file of what stands on it, on the same grid; NULL: nothing */
+    bool is_trusted;              /* a doubt about the heights is a warning */
+};
+
+/* Take elevations and heights. `pixel_m` is that of a pixel towards east and south. Returns 0, or
+ * -1 with the error reported: a file cannot be read or lies on another grid, its unit is not known,
+ * it does not look like heights (db_plausible_heights), the grid has more than SHADOW_PIXELS_MAX,
+ * or there is no memory. */
+int cast_shadow_open(struct cast_shadow *s, const struct cast_shadow_of *of,
+                     const double pixel_m[2]);
 
 /* Harmless on a zeroed struct. */
 void cast_shadow_close(struct cast_shadow *s);

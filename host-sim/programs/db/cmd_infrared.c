@@ -61,7 +61,7 @@ struct options {
     int month, day;
     double latitude_deg, air_c, air_range, humidity_percent, wind_m_s, cloud, water_c;
     long seed;
-    bool ignores_names, has_shadows;
+    bool ignores_names, has_shadows, trusts_inputs;
 };
 
 struct work {
@@ -122,7 +122,7 @@ static bool read_options(struct options *o, int argc, char **argv, int *exit_cod
         DB_CLASS_NUMBERS_OPTION(o->ignores_names),
         {"out", HS_FOLDER, &o->out, 0, 0, "FOLDER", "Where the files go; made if need be.", true},
         {"hours", HS_LIST, &o->hours, 0, 0, "H,H",
-         "Local solar hours, 0 to 24, also 13.5; default 4,14.", false},
+         "Local solar hours, 0 to less than 24, also 13.5; default 4,14.", false},
         {"date", HS_TAKER, &date, 0, 0, "MM-DD", "The day; default 06-21.", false},
         {"latitude", HS_REAL, &o->latitude_deg, -90, 90, "DEGREES",
          "Default: that of the raster's middle.", false},
@@ -145,6 +145,9 @@ static bool read_options(struct options *o, int argc, char **argv, int *exit_cod
          false},
         {"shadows", HS_FLAG, &o->has_shadows, 0, 0, NULL,
          "What --terrain and --heights hide from the sun is colder, and stays so for hours.",
+         false},
+        {"trust-inputs", HS_FLAG, &o->trusts_inputs, 0, 0, NULL,
+         "Go on where terrain or heights look like a mistake; the reasons are warnings then.",
          false},
         {"seed", HS_INTEGER, &o->seed, 0, 2147483647, "N",
          "Seed of the differences within a class, as that of `reflect`.", false},
@@ -229,8 +232,9 @@ static int open_shadows(struct work *w)
     pixel_places_row(&w->places, w->classes.grid.height / 2);
     const struct reflect_place a = row[middle], b = row[middle > 0 ? middle - 1 : 0];
     const double pixel_m[2] = {hypot(hypot(a.x - b.x, a.y - b.y), a.z - b.z), w->places.pixel_m};
-    return cast_shadow_open(&w->shadow, &w->classes.grid, o->terrain ? &w->slope : NULL, o->heights,
-                            pixel_m);
+    const struct cast_shadow_of of = {&w->classes, o->terrain ? &w->slope : NULL, o->heights,
+                                      o->trusts_inputs};
+    return cast_shadow_open(&w->shadow, &of, pixel_m);
 }
 
 static int prepare(struct work *w)
@@ -244,8 +248,8 @@ static int prepare(struct work *w)
         alloc_block(w) != 0) {
         return -1;
     }
-    if (o->terrain &&
-        ground_slope_open(&w->slope, o->terrain, &w->classes.grid, w->block_rows) != 0) {
+    if (o->terrain && ground_slope_open(&w->slope, o->terrain, &w->classes.grid, w->block_rows,
+                                        o->trusts_inputs) != 0) {
         return -1;
     }
     return set_weather(w) != 0 || (o->has_shadows && open_shadows(w) != 0) ? -1 : 0;
@@ -424,6 +428,17 @@ static int take_shot(struct work *w, double hour)
     return result;
 }
 
+/* Say how much of the ground has no elevation, once it is known. */
+static void report_missing_terrain(const struct work *w)
+{
+    const struct ground_slope *s = &w->slope;
+    if (s->missing > 0) {
+        hs_warn(w->options->terrain, "give terrain of the whole raster",
+                "%.1f %% of the pixels have no elevation, and are level ground",
+                100 * (double)s->missing / (double)s->pixels);
+    }
+}
+
 static int run(struct work *w)
 {
     if (prepare(w) != 0) {
@@ -439,6 +454,7 @@ static int run(struct work *w)
         result = take_shot(w, w->hours[i]);
     }
     hs_report_close();
+    report_missing_terrain(w);
     return result == 0 ? HS_EXIT_OK : HS_EXIT_FAILED;
 }
 
@@ -461,10 +477,12 @@ int db_cmd_infrared(int argc, char **argv)
     }
     w->options = &options;
     if (read_options(&options, argc, argv, &exit_code)) {
-        const bool is_bare = options.has_shadows && !options.terrain && !options.heights;
-        exit_code = is_bare ? hs_options_wrong(&usage, "--shadows",
-                                               "needs what casts them: --terrain or --heights")
-                            : run(w);
+        exit_code = options.has_shadows && !options.terrain && !options.heights
+                        ? hs_options_wrong(&usage, "--shadows",
+                                           "needs what casts them: --terrain or --heights")
+                    : options.heights && !options.has_shadows
+                        ? hs_options_wrong(&usage, "--heights", "casts shadows: add --shadows")
+                        : run(w);
     }
     free(w->values);
     free(w->radiance);

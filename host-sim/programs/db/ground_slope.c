@@ -2,6 +2,7 @@
 
 #include "gis/gdal_start.h"
 #include "gis/length_unit.h"
+#include "gis/plausible.h"
 #include "hs/error.h"
 
 #include <gdalwarper.h>
@@ -13,6 +14,9 @@ static const float nothing = -1e30F;
 static int check(const struct ground_slope *s, const char *path)
 {
     const struct db_grid *from = &s->terrain.grid, *to = s->grid;
+    if (s->terrain.band_count != 1) {
+        return hs_error(path, "name a raster of elevations", "has %d bands", s->terrain.band_count);
+    }
     if (!from->has_geotransform || !from->crs) {
         return hs_error(path, "add it with gdal_edit.py or gdalwarp", "has no georeferencing");
     }
@@ -25,7 +29,7 @@ static int check(const struct ground_slope *s, const char *path)
 }
 
 int ground_slope_open(struct ground_slope *s, const char *path, const struct db_grid *grid,
-                      int rows_most)
+                      int rows_most, bool is_trusted)
 {
     *s = (struct ground_slope){.grid = grid};
     if (db_raster_open_one(&s->terrain, path) != 0) {
@@ -35,9 +39,10 @@ int ground_slope_open(struct ground_slope *s, const char *path, const struct db_
     if (!s->heights) {
         return hs_error(path, NULL, "out of memory");
     }
-    return check(s, path) != 0
+    const GDALRasterBandH band = s->terrain.bands[0].handle;
+    return check(s, path) != 0 || db_band_unit(band, path, NULL, &s->metres) != 0
                ? -1
-               : db_band_unit(s->terrain.bands[0].handle, path, "--terrain", &s->metres);
+               : db_plausible_terrain(band, path, s->metres, is_trusted);
 }
 
 void ground_slope_close(struct ground_slope *s)
@@ -81,6 +86,10 @@ int ground_slope_rows(struct ground_slope *s, int y, int rows)
     }
     s->y = y;
     s->rows = rows;
+    for (size_t i = 0; is_there && i < (size_t)rows * (size_t)width; i++) {
+        s->missing += s->heights[(size_t)width + i] <= nothing;
+    }
+    s->pixels += (size_t)rows * (size_t)width;
     return is_there ? 0
                     : hs_error(s->terrain.name, "give terrain of the same place",
                                "cannot be brought to the class raster: %s", db_gdal_complaint());

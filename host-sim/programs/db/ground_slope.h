@@ -11,13 +11,15 @@ struct ground_slope {
     double metres;              /* in a unit of elevation */
     float *heights;             /* owned: of the rows asked for, and one on either side */
     int y, rows;
+    size_t pixels, missing; /* of all calls of ground_slope_rows; those without an elevation */
 };
 
 /* Prepare for a grid whose rows run from west to east, the first the northernmost. Returns 0, or -1
- * with the error reported: the file cannot be read, has no georeferencing or an unknown unit, the
+ * with the error reported: the file cannot be read, has several bands, no georeferencing or an
+ * unknown unit, does not look like terrain (db_plausible_terrain; a warning if it is trusted), the
  * grid is turned or has no CRS, or there is no memory for `rows_most` rows. */
 int ground_slope_open(struct ground_slope *s, const char *path, const struct db_grid *grid,
-                      int rows_most);
+                      int rows_most, bool is_trusted);
 
 /* Harmless on a zeroed struct. */
 void ground_slope_close(struct ground_slope *s);

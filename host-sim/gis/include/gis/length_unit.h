@@ -12,7 +12,7 @@ bool db_length_unit(const char *name, double *metres);
 
 /* Metres in a unit of the band, from its unit type; 1 when it has none. Returns 0, or -1 with the
  * error reported: the unit is not known. `path` is for messages, `option` the one that overrides
- * it. */
+ * it, NULL when there is none. */
 int db_band_unit(GDALRasterBandH band, const char *path, const char *option, double *metres);
 
 #endif

@@ -149,6 +149,52 @@ TEST(ground_that_faces_east_is_warmer_in_the_morning_and_colder_in_the_evening)
     }
 }
 
+/* A raster of one value, but for some of it. */
+static void write_level(const char *name, int side, float value)
+{
+    static float values[SIDE * SIDE];
+    struct db_grid grid = fixture_grid(side, side);
+    for (int i = 0; i < side * side; i++) {
+        values[i] = value + (float)(i % 7);
+    }
+    fixture_raster(name, &grid, GDT_Float32, values, -9999);
+    OSRDestroySpatialReference(grid.crs);
+}
+
+TEST(what_does_not_look_like_terrain_or_heights_is_refused_unless_it_is_trusted)
+{
+    static const struct {
+        const char *options, *file;
+        int side;
+        float value;
+        int status; /* without --trust-inputs */
+        const char *words;
+    } cases[] = {
+        {"--terrain", "far.tif", SIDE, 30000, 1, "nowhere on Earth"},
+        {"--terrain", "part.tif", SIDE / 2, 100, 0, "75.0 % of the pixels have no elevation"},
+        {"--shadows --heights", "gamma.tif", SIDE, -20, 1, "below"},
+        {"--shadows --heights", "sea.tif", SIDE, 400, 1, "above"},
+        {"--shadows --heights", "small.tif", SIDE / 2, 5, 1, "another grid"},
+        {"--heights", "five.tif", SIDE, 5, 2, "add --shadows"},
+    };
+    write_scene();
+    for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
+        char said[4000];
+        write_level(cases[i].file, cases[i].side, cases[i].value);
+        const int status = fixture_run(said, sizeof said, INFRARED "--hours 9 %s %s", PATHS,
+                                       cases[i].options, fixture_path(cases[i].file));
+        if (status != cases[i].status || !strstr(said, cases[i].words)) {
+            fail_msg("%s %s: %d, %s", cases[i].options, cases[i].file, status, said);
+        }
+    }
+    char said[4000];
+    assert_int_equal(fixture_run(said, sizeof said,
+                                 INFRARED "--hours 9 --trust-inputs --terrain %s", PATHS,
+                                 fixture_path("far.tif")),
+                     0);
+    assert_non_null(strstr(said, "warning"));
+}
+
 /* A wall of 10 m from south to north. At 8 h the sun is in the north-east, and the shadow reaches
  * 10 m times its eastward part over its height to the west; at 16 h to the east. */
 TEST(a_wall_casts_a_shadow_as_long_as_the_sun_is_low)
