@@ -119,7 +119,7 @@ static void tell_patch(const struct lm_unit *u, struct lm_report *r)
 static void tell_state(const struct lm_unit *u, struct lm_report *r)
 {
     const struct lm_page *page = &u->page;
-    const struct lm_radar *radar = u->board->radar;
+    const struct lm_radar *radar = page->radar;
     const uint64_t half = radar->azimuth_half[page->azimuth_index];
     const uint32_t half_deg = (uint32_t)((half * 360 + (1u << 31)) >> 32);
     tell(r, LM_REPORT_PICTURE,

@@ -33,21 +33,21 @@ static void report_body(const struct lm_scatterer *s)
 {
     const bool is_known = s->kind >= LM_SHAPE_SPHERE && s->kind < LM_SHAPE_KINDS;
     hs_report_object(NULL);
-    hs_report_put("shape", is_known ? scatterer_kinds[s->kind].name : "unknown");
+    hs_report_text("shape", is_known ? scatterer_kinds[s->kind].name : "unknown");
     hs_report_array("size_m");
     for (int i = 0; is_known && i < scatterer_kinds[s->kind].sizes; i++) {
-        hs_report_put(NULL, s->size_mm[i] / 1000.0);
+        hs_report_real(NULL, s->size_mm[i] / 1000.0);
     }
     hs_report_close();
     hs_report_array("offset_m");
     for (int i = 0; i < 3; i++) {
-        hs_report_put(NULL, s->offset_mm[i] / 1000.0);
+        hs_report_real(NULL, s->offset_mm[i] / 1000.0);
     }
     hs_report_close();
     if (is_known && scatterer_kinds[s->kind].has_direction) {
-        hs_report_put("azimuth_deg", image_longitude_degrees(s->azimuth));
-        hs_report_put("elevation_deg", image_degrees((int32_t)s->elevation));
-        hs_report_put("roll_deg", image_degrees((int32_t)s->roll));
+        hs_report_real("azimuth_deg", image_longitude_degrees(s->azimuth));
+        hs_report_real("elevation_deg", image_degrees((int32_t)s->elevation));
+        hs_report_real("roll_deg", image_degrees((int32_t)s->roll));
     }
     hs_report_flag("is_two_sided", s->is_two_sided != 0);
     hs_report_close();
@@ -65,18 +65,18 @@ static void report_leg(const struct lm_path_leg *leg)
 {
     const struct lm_position to = image_path_end(leg);
     hs_report_object(NULL);
-    hs_report_put("end_latitude_deg", image_degrees((int32_t)to.latitude));
-    hs_report_put("end_longitude_deg", image_longitude_degrees(to.longitude));
-    hs_report_put("length_m", leg->length_mm / 1000.0);
-    hs_report_put("heading_deg", image_degrees((int64_t)leg->heading));
+    hs_report_real("end_latitude_deg", image_degrees((int32_t)to.latitude));
+    hs_report_real("end_longitude_deg", image_longitude_degrees(to.longitude));
+    hs_report_real("length_m", leg->length_mm / 1000.0);
+    hs_report_real("heading_deg", image_degrees((int64_t)leg->heading));
     hs_report_close();
 }
 
 static void report_motion(const struct lm_target *t)
 {
-    hs_report_put("speed_m_s", t->speed_mm_s / 1000.0);
+    hs_report_real("speed_m_s", t->speed_mm_s / 1000.0);
     if (!(t->flags & LM_TARGET_HAS_PATH)) {
-        hs_report_put("leg_m", t->leg_m);
+        hs_report_integer("leg_m", t->leg_m);
         return;
     }
     hs_report_flag("path_is_round", t->path_is_round != 0);
@@ -90,12 +90,12 @@ static void report_motion(const struct lm_target *t)
 static void report_echo(const struct lm_target *t)
 {
     if (t->flags & LM_TARGET_HAS_SIGNATURE) {
-        hs_report_put("signature", t->signature);
+        hs_report_integer("signature", t->signature);
         return;
     }
     if (t->scatterer_count == 0) {
-        hs_report_put("swerling", t->swerling);
-        hs_report_put("mean_rcs_dbsm", t->mean_rcs_dbsm_q8 / 256.0);
+        hs_report_integer("swerling", t->swerling);
+        hs_report_real("mean_rcs_dbsm", t->mean_rcs_dbsm_q8 / 256.0);
         return;
     }
     hs_report_array("scatterers");
@@ -108,13 +108,13 @@ static void report_echo(const struct lm_target *t)
 static void report_target(const struct lm_target *t)
 {
     hs_report_object(NULL);
-    hs_report_put("id", t->id);
+    hs_report_integer("id", t->id);
     hs_report_text_within("name", t->name, sizeof t->name);
-    hs_report_put("latitude_deg", image_degrees((int32_t)t->latitude));
-    hs_report_put("longitude_deg", image_longitude_degrees(t->longitude));
-    hs_report_put("elevation_m", t->elevation_m_q6 / 64.0);
+    hs_report_real("latitude_deg", image_degrees((int32_t)t->latitude));
+    hs_report_real("longitude_deg", image_longitude_degrees(t->longitude));
+    hs_report_real("elevation_m", t->elevation_m_q6 / 64.0);
     hs_report_flag("is_above_ground", (t->flags & LM_TARGET_ABOVE_GROUND) != 0);
-    hs_report_put("heading_deg", image_degrees((int64_t)t->heading));
+    hs_report_real("heading_deg", image_degrees((int64_t)t->heading));
     report_echo(t);
     report_motion(t);
     hs_report_close();

@@ -60,8 +60,8 @@ static int render(const struct setup *s, const struct trace_records *r, const st
     if (!power) {
         return -1;
     }
-    hs_report_put("width_px", width);
-    hs_report_put("height_px", height);
+    hs_report_integer("width_px", width);
+    hs_report_integer("height_px", height);
     int result = o->csv ? write_csv(o->csv, power, width, height) : 0;
     if (result == 0 && o->png) {
         result = write_png(s, o, power, width, height);

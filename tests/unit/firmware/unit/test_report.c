@@ -156,6 +156,17 @@ TEST(mode_settings_and_a_patch_are_told_as_the_glass_shows_them)
     free_rig(r);
 }
 
+TEST(a_board_that_leaves_the_radar_to_the_image_tells_its_scale)
+{
+    static struct listener l;
+    struct rig *r = rig_that_tells(&l, NODE);
+    r->board.lent.radar = NULL;
+    assert_int_equal(lm_unit_init(&r->unit, &r->board.lent), LM_OK);
+    run(r, 0.5);
+    assert_true(told(&l, LM_REPORT_RANGE_SCALE) == 10);
+    free_rig(r);
+}
+
 TEST(old_navigation_is_told_as_old_and_lost_navigation_as_no_data)
 {
     static struct listener l;
