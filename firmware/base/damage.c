@@ -12,10 +12,11 @@ struct blocks {
     uint32_t first, end;
 };
 
-/* Bits `first` up to, not including, `end`; 0 <= first < end <= 64. */
+/* Bits `first` up to, not including, `end`; 0 <= first < end <= 64. The mask changes nothing then,
+ * and says so to those who cannot see it. */
 static uint64_t bits_between(uint32_t first, uint32_t end)
 {
-    return ~(uint64_t)0 >> (BLOCKS - (end - first)) << first;
+    return ~(uint64_t)0 >> ((BLOCKS - (end - first)) & (BLOCKS - 1)) << first;
 }
 
 static struct blocks blocks_of(const struct lm_rectangle *r)

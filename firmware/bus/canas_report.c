@@ -55,18 +55,18 @@ uint32_t lm_canas_report_due(const struct lm_canas_report *r, uint64_t now_us)
 /* Copy the items of a set. Those of one set stand together. */
 static void take_values(struct lm_canas_report *r, uint32_t set, const struct lm_report *values)
 {
-    uint8_t first = LM_REPORT_ITEMS, end = 0;
-    for (uint8_t i = 0; i < LM_REPORT_ITEMS; i++) {
+    uint32_t first = LM_REPORT_ITEMS, end = 0;
+    for (uint32_t i = 0; i < LM_REPORT_ITEMS; i++) {
         if (lm_report_rows[i].set == set) {
             const uint32_t bit = (uint32_t)1 << i;
             r->told.word[i] = values->word[i];
             r->told.known = (r->told.known & ~bit) | (values->known & bit);
             first = first < i ? first : i;
-            end = (uint8_t)(i + 1);
+            end = i + 1;
         }
     }
-    r->set[set].item = first;
-    r->set[set].end = end;
+    r->set[set].item = (uint8_t)first;
+    r->set[set].end = (uint8_t)end;
 }
 
 void lm_canas_report_begin(struct lm_canas_report *r, uint32_t sets, const struct lm_report *values,

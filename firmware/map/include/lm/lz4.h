@@ -1,5 +1,5 @@
-/* Decoder of LZ4 blocks, for tile records. Written from "LZ4 Block Format Description"
- * (lz4_Block_format.md of the LZ4 project).
+/* Decoder of LZ4 blocks, for tile records. Written from the document "LZ4 Block Format
+ * Description" of the LZ4 project.
  *
  * A block is a list of sequences. Each is some literal bytes and a match, which repeats bytes of
  * the output; the last one has literals alone:
