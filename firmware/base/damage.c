@@ -12,11 +12,12 @@ struct blocks {
     uint32_t first, end;
 };
 
-/* Bits `first` up to, not including, `end`; 0 <= first < end <= 64. The mask changes nothing then,
- * and says so to those who cannot see it. */
+/* Bits `first` up to, not including, `end`; 0 <= first < end <= 64. The masks change nothing then,
+ * and say so to those who cannot see it. */
 static uint64_t bits_between(uint32_t first, uint32_t end)
 {
-    return ~(uint64_t)0 >> ((BLOCKS - (end - first)) & (BLOCKS - 1)) << first;
+    const uint32_t mask = BLOCKS - 1;
+    return ~(uint64_t)0 >> ((BLOCKS - (end - first)) & mask) << (first & mask);
 }
 
 static struct blocks blocks_of(const struct lm_rectangle *r)
