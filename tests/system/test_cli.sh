@@ -32,9 +32,17 @@ lists_what_it_explains() { # PROGRAM [COMMAND]: every option of the list is in t
     done <"$work/list"
 }
 
+tells_defaults_once() { # PROGRAM [COMMAND]: what is "left out" is a clause of its own; no default is said twice
+    exits 0 "$@" --help=man &&
+        awk '/^left out:/ && before !~ /[;,.]$|^\\fB/ || /[^;,.] left out:/ { print "# " before " " $0; bad = 1 }
+            { before = $0 } END { exit bad }' "$out" &&
+        ! tr '\n' ' ' <"$out" | grep -oE '\(([0-9.]+)\) Range [^;]*; default \1\.'
+}
+
 explains_itself() { # PROGRAM [COMMAND]
     name=$(basename "$1")${2:+ $2}
     check "$name --help=man is a manual page" is_a_manual_page "$@"
+    check "$name --help tells each default once" tells_defaults_once "$@"
     check "$name --help=list names what --help explains" lists_what_it_explains "$@"
 }
 

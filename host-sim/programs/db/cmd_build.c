@@ -91,12 +91,12 @@ static bool read_settings(struct settings *s, int argc, char **argv, int *exit_c
                "reflectivity (gamma, dB) on the class raster's grid; left out: drawn from "
                "the class's distribution"),
         OPTION("radar", HS_INPUT, radar, 0, 0, "FILE",
-               "table of the radar that shall look at the image, a text (landmass-radar)\nleft "
-               "out: the display uses its own"),
+               "table of the radar that shall look at the image, a text (landmass-radar);\n"
+               "left out: the display uses its own"),
         OPTION("compress", HS_CHOICE, compression, 0, 0, IMAGE_COMPRESSION_WORDS,
                "how tiles are stored; none: larger, and the display unpacks nothing"),
         OPTION("sensor", HS_CHOICE, sensor, 0, 0, HS_SENSOR_WORDS,
-               "what the image is for: a radar of that band, or the infrared\nleft out: what the "
+               "what the image is for: a radar of that band, or the infrared;\nleft out: what the "
                "reflectivity was made for, or the band of --radar, or x"),
         OPTION(
             "heights", HS_INPUT, heights, 0, 0, "FILE",

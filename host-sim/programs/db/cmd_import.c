@@ -69,8 +69,9 @@ static bool read_options(struct import_options *o, int argc, char **argv, int *e
                "Where in the CRS the models' origin lies; default 0,0."),
         OPTION("area", HS_TEXT, area, "S,W,N,E", "Part of a CDB, degrees; default all of it."),
         {"cell", HS_REAL, &o->cell_m, 0, 10000, "METRES",
-         "Length of a cell. Of a CDB: the coarsest level with pixels that short; default the "
-         "finest imagery's.",
+         "Length of a cell; models need it. Of a CDB: the coarsest level with pixels that short, "
+         "or "
+         "with 0 the finest imagery's.",
          false},
         OPTION("classes", HS_INPUT, classes, "FILE", "The class table; needed with --map."),
         OPTION("map", HS_INPUT, map, "FILE",

@@ -53,7 +53,7 @@ static bool read_settings(struct settings *s, int argc, char **argv, int *exit_c
                "a GeoPackage to write, of all that was made: to look at in QGIS"),
         OPTION("area", HS_TEXT, area, 0, 0, "S,W,N,E",
                "degrees; left out: what the files say of themselves, or all of them"),
-        OPTION("cell", HS_REAL, cell_m, 0.2, 1000, "METRES", "side of a pixel (2)"),
+        OPTION("cell", HS_REAL, cell_m, 0.2, 1000, "METRES", "side of a pixel"),
         OPTION("ground", HS_INPUT, ground, 0, 0, "FILE",
                "class raster or land cover under the vectors; left out: none, so that build "
                "decides by elevation"),
