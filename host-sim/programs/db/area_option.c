@@ -20,3 +20,9 @@ int db_area_read(struct image_area *area, const char *text)
     area->width = (int64_t)(uint32_t)(image_bam(d[3]) - image_bam(d[1]));
     return area->width > 0 ? 0 : hs_error("--area", NULL, "is empty");
 }
+
+int db_area_is_empty(const char *place, int level)
+{
+    return hs_error(place, "see `landmass-db inspect` for where there is",
+                    "there is no data in this area at level %d or coarser", level);
+}

@@ -202,6 +202,17 @@ static int write_strip(struct work *w, const struct plane *plane, struct db_rast
     return db_raster_write(out, y, rows, w->bytes);
 }
 
+/* The classes, which are the first plane, show where there is data. */
+static int check_classes(struct work *w, struct db_raster_out *out)
+{
+    const uint64_t count = (uint64_t)w->view.width * (uint64_t)w->view.height;
+    if (w->pixels[DB_CLASS_NODATA] == count) {
+        return db_area_is_empty(w->settings->out, w->view.level);
+    }
+    db_class_raster_attributes(out, &w->table, w->pixels, w->area_km2);
+    return 0;
+}
+
 static int write_raster(struct work *w, const struct plane *plane, const char *path,
                         struct db_qgis_layer *layer)
 {
@@ -218,10 +229,10 @@ static int write_raster(struct work *w, const struct plane *plane, const char *p
         hs_progress_update(&progress, (uint64_t)y);
     }
     hs_progress_end(&progress);
+    if (result == 0 && plane->plane == IMAGE_PLANE_CLASS) {
+        result = check_classes(w, &out);
+    }
     if (result == 0) {
-        if (plane->plane == IMAGE_PLANE_CLASS) {
-            db_class_raster_attributes(&out, &w->table, w->pixels, w->area_km2);
-        }
         return db_raster_commit_cog(&out, plane->resampling);
     }
     db_raster_abort(&out);

@@ -73,8 +73,7 @@ static int draw(const struct image *image, const struct settings *s, struct imag
     }
     int result = image_view_draw(image, view, pixels);
     if (result == 0 && !view->has_data) {
-        result = hs_error(s->out, "see `landmass-db inspect` for where there is",
-                          "there is no data in this area at level %d or coarser", view->level);
+        result = db_area_is_empty(s->out, view->level);
     }
     if (result == 0) {
         result =
