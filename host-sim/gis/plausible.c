@@ -2,6 +2,7 @@
 
 #include "gis/class_numbers.h"
 #include "gis/gdal_start.h"
+#include "gis/length_unit.h"
 #include "hs/error.h"
 
 #include <math.h>
@@ -189,6 +190,56 @@ int db_plausible_reflectivity(GDALRasterBandH band, const char *path, bool is_tr
         return -1;
     }
     const int result = judge_reflectivity(&s, path, is_trusted);
+    db_band_sample_free(&s);
+    return result;
+}
+
+/* ---- radar imagery ---- */
+
+/* Mean gamma0 of a scene: calm water returns about -30 dB and a town's middle about 0 dB. 10 dB
+ * beyond both is left for other bands, polarisations and calibrations (UNSOURCED). */
+static const double least_mean_db = -40, greatest_mean_db = 10;
+
+static int judge_powers(const struct db_band_sample *s, const char *path, bool is_trusted)
+{
+    const char *remedy = "give calibrated gamma0 or sigma0";
+    double sum = 0;
+    for (size_t i = 0; i < s->count; i++) {
+        if (s->values[i] < 0) {
+            return 0;
+        }
+        sum += s->values[i];
+    }
+    if (are_whole(s)) {
+        return hs_doubt(is_trusted, path, remedy,
+                        "holds whole numbers alone, as a class raster or raw numbers do");
+    }
+    const double mean_db = s->count > 0 ? 10 * log10(sum / (double)s->count) : least_mean_db;
+    return mean_db >= least_mean_db && mean_db <= greatest_mean_db
+               ? 0
+               : hs_doubt(is_trusted, path, remedy,
+                          "has a mean of %.1f dB as linear power, and ground returns %g to %g dB",
+                          mean_db, least_mean_db, greatest_mean_db);
+}
+
+static int doubt_unit(GDALRasterBandH band, const char *path, bool is_trusted)
+{
+    double metres;
+    const char *unit = GDALGetRasterUnitType(band);
+    return unit[0] && db_length_unit(unit, &metres)
+               ? hs_doubt(is_trusted, path, "give a raster of it",
+                          "is no radar imagery but seems to be elevations: its unit is `%s`", unit)
+               : 0;
+}
+
+int db_plausible_radar(GDALRasterBandH band, const char *path, bool is_linear, bool is_trusted)
+{
+    struct db_band_sample s;
+    if (doubt_kind(band, path, "radar imagery", is_trusted) != 0 ||
+        doubt_unit(band, path, is_trusted) != 0 || db_band_sample(&s, band, path, 1) != 0) {
+        return -1;
+    }
+    const int result = is_linear ? judge_powers(&s, path, is_trusted) : 0;
     db_band_sample_free(&s);
     return result;
 }

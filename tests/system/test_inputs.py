@@ -593,6 +593,48 @@ def radar_not_db():
     return db(*radar("linear.tif", 10 ** (radar_db() / 10)), "--radar-unit", "db")
 
 
+def wrong_radar(name, unit, make):
+    """A row for a raster that is no radar imagery, and that its user may mean all the same."""
+    @row(name + " as radar imagery, `--radar-unit %s`" % unit, "reflect", "refused")
+    def is_doubted():
+        words = REFLECT + ["--out", "no-radar.tif", "--method", "radar", "--radar", make(), "--radar-unit", unit]
+        done = kept_away("no-radar.tif", lambda: db(*words))
+        assert unit == "db" or trusted(words).code == 0
+        return done
+
+
+def kept_away(path, work):
+    """What `work` does, which leaves no file at `path`."""
+    if os.path.exists(path):
+        os.remove(path)
+    done = work()
+    assert not os.path.exists(path), path + " was written"
+    return done
+
+
+def digital_numbers():
+    return raster("optical.tif", image_planes()[:1], gdal.GDT_UInt16)
+
+
+def powers(path, factor):
+    return raster(path, [factor * 10 ** (radar_db() / 10)])
+
+
+for the_unit in ("linear", "db"):
+    wrong_radar("class raster", the_unit, lambda: "classes.tif")
+    wrong_radar("elevations in metres by their band", the_unit, lambda: raster("metres.tif", [slope(5, SIDE) / 50], unit="metre"))
+wrong_radar("elevations", "linear", lambda: terrain("heights.tif", slope() + 0.25))
+wrong_radar("class raster without names", "linear", lambda: without_names())
+wrong_radar("raw optical numbers", "linear", digital_numbers)
+wrong_radar("powers 50 dB too weak", "linear", lambda: powers("weak.tif", 1e-5))
+
+
+@row("radar imagery in linear power", "reflect", "done")
+def radar_linear():
+    powers("power.tif", 1)
+    return db(*REFLECT, "--out", "radar-gamma.tif", "--method", "radar", "--radar", "power.tif", "--radar-unit", "linear")
+
+
 @row("radar imagery with a hole", "reflect", "warned")
 def radar_hole():
     plane = radar_db()
@@ -814,6 +856,20 @@ def one_band():
 def out_of_range():
     raster("bright.tif", [plane + 400 for plane in image_planes()], gdal.GDT_Float32)
     return db(*["bright.tif" if word == "image.tif" else word for word in SEGMENT], "--out", "bright-classes.tif")
+
+
+# ---- Areas of an image.
+
+@row("`--area` outside the image", "picture", "refused")
+def picture_elsewhere():
+    return kept_away("elsewhere.png", lambda: db("picture", "area.lmdb", "--plane", "class", "--area", "10,10,10.1,10.1", "--out", "elsewhere.png"))
+
+
+@row("`--area` outside the image", "export", "refused")
+def export_elsewhere():
+    done = db("export", "area.lmdb", "--area", "10,10,10.01,10.01", "--out", "elsewhere")
+    assert not os.path.exists("elsewhere") or not os.listdir("elsewhere"), os.listdir("elsewhere")
+    return done
 
 
 # ---- The geoid of an image.

@@ -104,6 +104,9 @@ static bool read_options(struct options *o, int argc, char **argv, int *exit_cod
          "class: each class gets the mean of the class table; scene: one number of dB for all;\n"
          "none: as it is.",
          false},
+        {"trust-inputs", HS_FLAG, &o->radar.is_trusted, 0, 0, NULL,
+         "Go on where the radar imagery looks like a mistake; the reasons are warnings then.",
+         false},
         {"bands", HS_LIST, &o->bands, 0, 0, "N,N",
          "Bands of the image whose mean is the brightness, from 1; default all.", false},
         {"seed", HS_INTEGER, &o->seed, 0, 2147483647, "N", "Seed of the random values.", false},

@@ -1,6 +1,7 @@
 #include "radar_image.h"
 
 #include "gis/gdal_start.h"
+#include "gis/plausible.h"
 #include "hs/error.h"
 
 #include <cpl_string.h>
@@ -190,6 +191,10 @@ int radar_image_open(struct radar_image *r, const struct radar_options *options,
         return -1;
     }
     int result = check_raster(&raster, options);
+    if (result == 0) {
+        result = db_plausible_radar(raster.bands[options->band - 1].handle, options->path,
+                                    options->unit == RADAR_LINEAR, options->is_trusted);
+    }
     if (result == 0) {
         result = read_powers(r, &raster, options);
     }

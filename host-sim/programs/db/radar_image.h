@@ -14,6 +14,7 @@ struct radar_options {
     int unit; /* enum radar_unit; -1: not said */
     long band, multilook;
     double incidence_deg; /* NAN: the values are gamma0 */
+    bool is_trusted;      /* a doubt about the imagery is a warning */
 };
 
 enum { RADAR_PIXELS_MAX = 1 << 28 };
@@ -31,6 +32,7 @@ struct radar_image {
 /* Read the imagery as powers, each the mean over multilook x multilook pixels. Returns 0, or -1
  * with the error reported:
  * - it cannot be read, has not that band, more than RADAR_PIXELS_MAX pixels, or no georeferencing,
+ * - it seems to be something else (gis/plausible.h) and is not trusted,
  * - its values cannot be of the unit: powers below 0, or decibels nearly all above 0,
  * - it does not lie on the grid, or PROJ does not bring it there. */
 int radar_image_open(struct radar_image *r, const struct radar_options *options,

@@ -22,7 +22,7 @@ int db_band_sample(struct db_band_sample *s, GDALRasterBandH band, const char *p
 void db_band_sample_free(struct db_band_sample *s);
 
 /* Each returns 0, or -1 with a doubt or an error reported. Complex numbers are doubted in all, and
- * no value at all in the last two. */
+ * no value at all in reflectivity and heights. */
 
 /* Terrain, `metres` a unit: it has the colours of a picture or classes; values are many that lie
  * nowhere on Earth (another unit); posts hold -9999 or -32767 that no nodata value declares. */
@@ -31,6 +31,11 @@ int db_plausible_terrain(GDALRasterBandH band, const char *path, double metres, 
 /* Reflectivity in dB: colours or classes; values beyond -100..60 dB; none below 0 dB (classes,
  * linear power). */
 int db_plausible_reflectivity(GDALRasterBandH band, const char *path, bool is_trusted);
+
+/* Radar imagery, linear power or dB: colours or classes; a band whose unit is one of length. Of
+ * powers also: whole numbers alone (raw numbers, classes), or a mean that no ground returns. No
+ * value, and powers below 0, are left to who reads them. */
+int db_plausible_radar(GDALRasterBandH band, const char *path, bool is_linear, bool is_trusted);
 
 /* Heights above ground, `metres` a unit: colours or classes; the class raster itself; more than a
  * twentieth below -2 m (reflectivity); more than half above 100 m (elevations above the sea). */
