@@ -77,7 +77,7 @@ static int make_canvas(struct import *im, const struct cdb_grid *g, const struct
 
 static int read_elevation(struct import *im, struct visual_cdb *cdb, struct cdb_grid *g)
 {
-    struct cdb_tiles tiles;
+    struct cdb_tiles tiles = {0};
     if (visual_cdb_tiles(cdb, &tiles, CDB_ELEVATION, rasters) != 0) {
         return -1;
     }
@@ -107,7 +107,7 @@ static int read_elevation(struct import *im, struct visual_cdb *cdb, struct cdb_
 
 static int read_materials(struct import *im, struct visual_cdb *cdb, const struct cdb_grid *g)
 {
-    struct cdb_tiles tiles;
+    struct cdb_tiles tiles = {0};
     if (!im->options->map) {
         return 0;
     }
