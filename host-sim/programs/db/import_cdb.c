@@ -230,7 +230,7 @@ int import_cdb(struct import *im)
 {
     struct cdb_area area = {-90, -180, 90, 180};
     struct visual_cdb cdb;
-    struct cdb_tiles imagery;
+    struct cdb_tiles imagery = {0};
     if (read_area(im->options, &area) != 0 ||
         visual_cdb_open(&cdb, im->options->cdb, im->options->area ? &area : NULL) != 0 ||
         visual_cdb_tiles(&cdb, &imagery, CDB_IMAGERY, rasters) != 0) {
