@@ -13,7 +13,7 @@ static const struct hs_usage usage = {
     "bake", "the signature of what was learned, for the display unit",
     "Traces the model from all sides, lets the learned networks say what each reflection returns,\n"
     "and keeps it as chips of ground pixels, with the shadow, in FILE.sig: docs/targets.md. Cells\n"
-    "are 0.1 m, as in training. The learned pixels are left out: the display has its own."};
+    "are 0.1 m, as in training. Without the learned pixels: the display has its own."};
 
 enum { CELLS_MIN = 64, CELLS_MAX = 1024, MIDDLE = NM_LARGE / 2 };
 
