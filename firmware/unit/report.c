@@ -136,13 +136,17 @@ void lm_send_reports(struct lm_unit *u, uint64_t now_us)
     const uint32_t sets = lm_canas_report_due(&u->report, now_us);
     if (sets != 0) {
         struct lm_report values = {.is_stale = (u->flags & LM_FLAG_NAV_STALE) != 0};
-        tell_cursor(u, &values);
-        tell_place(u, &values);
-        tell_state(u, &values);
-        lm_canas_report_begin(&u->report, sets, &values, now_us);
+        if (sets >> LM_REPORT_CURSOR & 1) {
+            tell_cursor(u, &values);
+        }
         if (sets >> LM_REPORT_PLACE & 1) {
+            tell_place(u, &values);
             lm_canas_service_tell_state(&u->service, now_us);
         }
+        if (sets >> LM_REPORT_STATE & 1) {
+            tell_state(u, &values);
+        }
+        lm_canas_report_begin(&u->report, sets, &values, now_us);
     }
     lm_canas_report_send(&u->report, u->board->can);
 }

@@ -33,15 +33,20 @@ struct focus {
     double side_m, pixel_m;
 };
 
-static void report_statistics(const char *key, const struct rr_statistics *s, double cells)
+static void put_statistics(const struct rr_statistics *s)
 {
-    hs_report_object(key);
-    hs_report_put("cells", cells);
     hs_report_put("cv_power", s->cv_intensity);
     hs_report_put("cv_amplitude", s->cv_amplitude);
     hs_report_put("std_db", s->db_std);
     hs_report_put("ks", s->ks);
     hs_report_put("enl", s->enl);
+}
+
+static void report_statistics(const char *key, const struct rr_statistics *s, double cells)
+{
+    hs_report_object(key);
+    hs_report_put("cells", cells);
+    put_statistics(s);
     hs_report_close();
 }
 
@@ -84,11 +89,7 @@ static void report_window(const struct rr_window *w, struct rr_place place, bool
     hs_report_put("mean", w->mean);
     hs_report_put("texture", w->texture);
     hs_report_flag("is_bright", is_bright);
-    hs_report_put("cv_power", s->cv_intensity);
-    hs_report_put("cv_amplitude", s->cv_amplitude);
-    hs_report_put("std_db", s->db_std);
-    hs_report_put("ks", s->ks);
-    hs_report_put("enl", s->enl);
+    put_statistics(s);
     hs_report_close();
 }
 

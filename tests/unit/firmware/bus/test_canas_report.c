@@ -57,6 +57,13 @@ static void run_until(struct lm_canas_report *r, struct wire *w, const struct lm
     }
 }
 
+/* A display that tells everything, and a bus on which nothing was said. */
+static void begin(struct lm_canas_report *r, struct wire *w)
+{
+    memset(w, 0, sizeof *w);
+    lm_canas_report_init(r, NODE);
+}
+
 static uint32_t count_of(const struct wire *w, uint32_t id)
 {
     uint32_t count = 0;
@@ -91,8 +98,7 @@ TEST(each_item_is_told_at_its_rate_with_a_code_that_counts_its_sets)
     static struct wire w;
     struct lm_canas_report r;
     const struct lm_report values = all_known();
-    memset(&w, 0, sizeof w);
-    lm_canas_report_init(&r, NODE);
+    begin(&r, &w);
     run_until(&r, &w, &values, 10000000, 100);
     for (uint32_t i = 0; i < LM_REPORT_ITEMS; i++) {
         const struct lm_report_row *row = &lm_report_rows[i];
@@ -117,8 +123,7 @@ TEST(a_frame_has_sender_type_code_and_the_number_with_its_highest_byte_first)
     static struct wire w;
     struct lm_canas_report r;
     struct lm_report values = all_known();
-    memset(&w, 0, sizeof w);
-    lm_canas_report_init(&r, NODE);
+    begin(&r, &w);
     values.word[LM_REPORT_CURSOR_LATITUDE] = (uint32_t)-123456789;
     values.word[LM_REPORT_GAIN] = (uint32_t)-7 & 0xff;
     run_until(&r, &w, &values, 5 * STEP_US, 100);
@@ -141,8 +146,7 @@ TEST(what_is_not_known_is_told_as_no_data_and_what_is_old_as_old)
     static struct wire w;
     struct lm_canas_report r;
     struct lm_report values = all_known();
-    memset(&w, 0, sizeof w);
-    lm_canas_report_init(&r, NODE);
+    begin(&r, &w);
     values.known &= ~(1u << LM_REPORT_CURSOR_ELEVATION);
     values.is_stale = true;
     run_until(&r, &w, &values, 5 * STEP_US, 100);
@@ -159,8 +163,7 @@ TEST(a_set_holds_values_of_one_moment_however_slowly_the_bus_takes_it)
     static struct wire w;
     struct lm_canas_report r;
     struct lm_report values = all_known();
-    memset(&w, 0, sizeof w);
-    lm_canas_report_init(&r, NODE);
+    begin(&r, &w);
     run_until(&r, &w, &values, STEP_US, 1);
     for (uint32_t i = 0; i < LM_REPORT_ITEMS; i++) {
         values.word[i] = 0;
@@ -178,8 +181,7 @@ TEST(a_bus_that_takes_too_little_cuts_sets_short_and_they_are_counted)
     static struct wire w;
     struct lm_canas_report r;
     const struct lm_report values = all_known();
-    memset(&w, 0, sizeof w);
-    lm_canas_report_init(&r, NODE);
+    begin(&r, &w);
     run_until(&r, &w, &values, 2000000, 0);
     assert_int_equal(w.count, 0);
     /* 20 of the cursor, 4 places and 10 states were begun; the last of each still waits. */
@@ -193,8 +195,7 @@ TEST(a_bus_that_is_down_loses_frames_and_holds_nothing_up)
     static struct wire w;
     struct lm_canas_report r;
     const struct lm_report values = all_known();
-    memset(&w, 0, sizeof w);
-    lm_canas_report_init(&r, NODE);
+    begin(&r, &w);
     w.answer = LM_ERR_IO;
     run_until(&r, &w, &values, 1000000, 100);
     assert_int_equal(r.count.lost, 10 * 6 + 2 * 3 + 5 * 6);
