@@ -1,5 +1,7 @@
 #include "drv/blit.h"
 
+#include "fx/sat.h"
+
 #include <stdbool.h>
 #include <stddef.h>
 #include <string.h>
@@ -72,16 +74,6 @@ static void copy_part(const struct drv_target *to, uint32_t row, uint32_t column
     }
 }
 
-static uint32_t smaller(uint32_t a, uint32_t b)
-{
-    return a < b ? a : b;
-}
-
-static uint32_t larger(uint32_t a, uint32_t b)
-{
-    return a > b ? a : b;
-}
-
 /* A copy: the picture as it lies on the target. */
 struct copy {
     const struct drv_target *to;
@@ -113,8 +105,8 @@ static struct lm_rectangle turned(const struct copy *c, const struct lm_rectangl
 /* The part from `first` up to `end` of what a span shows. */
 static struct span part_of(const struct span *whole, int32_t first, int32_t end)
 {
-    const uint32_t begin = larger((uint32_t)first, whole->source);
-    const uint32_t stop = smaller((uint32_t)end, whole->source + whole->count);
+    const uint32_t begin = fx_max_u32((uint32_t)first, whole->source);
+    const uint32_t stop = fx_min_u32((uint32_t)end, whole->source + whole->count);
     return (struct span){begin, whole->target + begin - whole->source,
                          stop > begin ? stop - begin : 0};
 }
@@ -131,10 +123,10 @@ static void copy_rectangle(const struct copy *c, const struct lm_rectangle *r)
     const uint32_t width = c->is_upright ? x.count : TILE;
     for (uint32_t top = 0; top < y.count; top += TILE) {
         for (uint32_t left = 0; left < x.count; left += width) {
-            for (uint32_t row = top; row < smaller(top + TILE, y.count); row++) {
+            for (uint32_t row = top; row < fx_min_u32(top + TILE, y.count); row++) {
                 const uint32_t *source = c->walk.start + (y.source + row) * c->walk.along_y +
                                          (x.source + left) * c->walk.along_x;
-                copy_part(c->to, y.target + row, x.target + left, smaller(width, x.count - left),
+                copy_part(c->to, y.target + row, x.target + left, fx_min_u32(width, x.count - left),
                           source, c->walk.along_x);
             }
         }
