@@ -96,9 +96,9 @@ double reflect_raysar_specular(const struct reflect_material *m, double theta1, 
     return m->specular * lobe(m, theta1, theta2, theta4);
 }
 
-double reflect_raysar_diffuse(const struct reflect_material *m, double theta1)
+double reflect_raysar_diffuse(const struct reflect_material *m, double theta2)
 {
-    return m->diffuse * pow(fmax(cos(theta1), 0), m->brilliance);
+    return m->diffuse * pow(fmax(cos(theta2), 0), m->brilliance);
 }
 
 static double power_reflectivity(const struct reflect_material *m, bool is_vv, double theta1)
@@ -126,11 +126,11 @@ struct reflect_shares reflect_record(const struct reflect_law *law, const struct
     const bool is_vv = law->kind == REFLECT_FRESNEL_VV || law->kind == REFLECT_SPM_VV;
     if (law->kind == REFLECT_RAYSAR) {
         return shares(m->specular,
-                      reflect_raysar_specular(m, t1, t2, t4) + reflect_raysar_diffuse(m, t1));
+                      reflect_raysar_specular(m, t1, t2, t4) + reflect_raysar_diffuse(m, t2));
     }
     double specular = power_reflectivity(m, is_vv, t1);
     if (law->kind == REFLECT_FRESNEL_HH || law->kind == REFLECT_FRESNEL_VV) {
-        return shares(specular, specular * lobe(m, t1, t2, t4) + reflect_raysar_diffuse(m, t1));
+        return shares(specular, specular * lobe(m, t1, t2, t4) + reflect_raysar_diffuse(m, t2));
     }
     specular *= smooth_share(m, law->wavelength_m, t1);
     const double rough =

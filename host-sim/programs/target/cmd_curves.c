@@ -57,7 +57,7 @@ static double value_at(void *ctx, double x_deg)
                                              turn_between(t1, x));
     case 5:
         return reflect_raysar_specular(&c->material, t1, fabs(x), turn_between(t1, x));
-    default:
+    default: /* the light, and with it the radar, stands at t1; alike to all sides */
         return reflect_raysar_diffuse(&c->material, t1);
     }
 }

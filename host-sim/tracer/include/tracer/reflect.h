@@ -50,10 +50,12 @@ double reflect_spm_sigma0(const struct reflect_material *m, double wavelength_m,
                           double theta1, double theta2, double theta4);
 
 /* RaySAR's specular lobe F_s (N.H)^(1 / F_r), eq. (10), and diffuse part F_d (N.L)^F_b, eq. (11).
- */
+ * L points to the radar: the angle is that of the echo. POV-Ray, RaySAR's engine, has the light at
+ * the radar and follows the signal backwards, so the "incident angle" of the paper's remark on
+ * Fig. 6 is the light's, the same angle. */
 double reflect_raysar_specular(const struct reflect_material *m, double theta1, double theta2,
                                double theta4);
-double reflect_raysar_diffuse(const struct reflect_material *m, double theta1);
+double reflect_raysar_diffuse(const struct reflect_material *m, double theta2);
 
 /* ---- laws to choose from ---- */
 

@@ -96,7 +96,8 @@ TEST(the_turn_gives_back_the_azimuth)
     assert_true(reflect_cos_theta3(0, 0, 0) == -1);
 }
 
-/* Figures 5 and 6: F_s in the specular direction at every incidence; diffuse alike to all sides. */
+/* Figures 5 and 6: F_s in the specular direction at every incidence; diffuse by the angle to the
+ * radar alone, wherever the ray came from. */
 TEST(raysar_is_as_paper_b_describes_it)
 {
     for (double t = 0; t < 90; t += 10) {
