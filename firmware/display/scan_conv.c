@@ -329,21 +329,14 @@ struct lm_frame lm_frame_square(const struct lm_frame *frame)
 /* Copy a row, shifted to the right; the rows may be the same. */
 static void shift_row(uint8_t *to, const uint8_t *from, int32_t width_px, int32_t right_px)
 {
-    const int32_t kept = width_px - (int32_t)fx_abs_u32(right_px);
-    if (kept <= 0) {
-        memset(to, 0, (size_t)width_px);
-        return;
-    }
-    if (right_px >= 0) {
-        for (int32_t x = kept - 1; x >= 0; x--) {
-            to[x + right_px] = from[x];
-        }
-        memset(to, 0, (size_t)right_px);
+    const uint32_t blank = fx_min_u32(fx_abs_u32(right_px), (uint32_t)width_px);
+    const uint32_t kept = (uint32_t)width_px - blank;
+    if (right_px > 0) {
+        memmove(to + blank, from, kept);
+        memset(to, 0, blank);
     } else {
-        for (int32_t x = 0; x < kept; x++) {
-            to[x] = from[x - right_px];
-        }
-        memset(to + kept, 0, (size_t)-right_px);
+        memmove(to, from + blank, kept);
+        memset(to + kept, 0, blank);
     }
 }
 

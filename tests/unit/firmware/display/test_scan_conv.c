@@ -428,3 +428,35 @@ TEST(a_patch_grows_line_by_line)
     }
     close_glass(&g);
 }
+
+/* What a pixel of a frame that was moved shows: that of where it came from, or black. */
+static uint8_t moved(const struct glass *g, const uint8_t *before, int32_t x, int32_t y)
+{
+    return is_inside(g, x, y) ? before[y * g->plane.width_px + x] : 0;
+}
+
+TEST(a_picture_is_moved_whole_in_every_direction_and_black_comes_in)
+{
+    static const int32_t far[] = {0, 1, -1, 7, -7, 16, -16, 100, -100, 300, -300, 5000, -5000};
+    enum { FAR = sizeof far / sizeof far[0], SIDE = 256 };
+    static uint8_t before[SIDE * SIDE];
+    for (int32_t n = 0; n < FAR * FAR; n++) {
+        struct glass g;
+        make_glass(&g, SIDE, SIDE);
+        for (int32_t y = g.frame.top_px; y < g.frame.top_px + g.frame.height_px; y++) {
+            for (int32_t x = g.frame.left_px; x < g.frame.left_px + g.frame.width_px; x++) {
+                g.plane.pixels[y * SIDE + x] = (uint8_t)(x * 31 + y * 17);
+            }
+        }
+        memcpy(before, g.plane.pixels, sizeof before);
+        const int32_t right = far[n % FAR], down = far[n / FAR];
+        lm_plane_shift(&g.plane, &g.frame, right, down);
+        for (int32_t y = g.frame.top_px; y < g.frame.top_px + g.frame.height_px; y++) {
+            for (int32_t x = g.frame.left_px; x < g.frame.left_px + g.frame.width_px; x++) {
+                assert_int_equal(g.plane.pixels[y * SIDE + x],
+                                 moved(&g, before, x - right, y - down));
+            }
+        }
+        close_glass(&g);
+    }
+}
