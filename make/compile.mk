@@ -17,7 +17,9 @@ compile = $(eval $(call compile_rule,$(strip $(1)),$(strip $(2)),$(strip $(3)),$
 # A folder's flags are those of its layer. EXTRA_CFLAGS of an object are what its part adds (see the *.mk files).
 $(foreach r,$(ROOMS),$(eval $(O)/firmware/$r/%.o: ROOM := $r))
 # What has no loop over cells or pixels: a board that counts its bytes compiles it for size.
-$(foreach r,base table bus nav page unit map/db,$(eval $(O)/firmware/$r$(if $(findstring /,$r),,/%).o: OPT_core := $(OPT_rest)))
+WITHOUT_LOOPS := base/% table/% bus/% nav/% page/% unit/% map/db map/detail map/tile_cache \
+    targets/chips targets/mover targets/signature targets/target targets/target_candidates display/test_pattern
+$(foreach f,$(WITHOUT_LOOPS),$(eval $(O)/firmware/$f.o: OPT_core := $(OPT_rest)))
 $(call compile, fixed/,    fixed/,    $$(CFLAGS_fixed) $$(OPT_core))
 $(call compile, firmware/, firmware/, $$(call CFLAGS_room,$$(ROOM)) $$(OPT_core))
 $(call compile, drivers/,  drivers/,  $$(CFLAGS_drivers))

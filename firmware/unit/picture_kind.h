@@ -7,7 +7,7 @@
 enum lm_sweep {
     LM_SWEEP_GOES_ON,
     LM_SWEEP_BEGUN,
-    LM_SWEEP_BEGUN_AT_COST /* the sweep's geometry took the time of a step */
+    LM_SWEEP_BEGUN_AT_COST /* this part of its beginning took the time of a step */
 };
 
 /* Methods. They are called once a line, a step or a picture, never for a cell or a pixel. They must
@@ -26,7 +26,8 @@ struct lm_picture_methods {
     void (*prefetch)(struct lm_picture *p);
     bool (*is_ready)(struct lm_picture *p, uint64_t now_us);
 
-    /* Begin a sweep if the next line is its first one. The view has then changed. */
+    /* Begin a sweep if the next line is its first one. The view has then changed. A beginning of
+     * several parts is called once for each of them. */
     enum lm_sweep (*begin)(struct lm_picture *p, uint64_t now_us);
 
     /* Trace samples that the next line needs, within *azimuths. True if it has all. False: more are

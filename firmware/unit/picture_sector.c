@@ -20,6 +20,7 @@ static enum lm_refusal start(struct lm_picture *p, const struct lm_sar_command *
     (void)patch;
     (void)now_us;
     const struct lm_page *page = p->lent.page;
+    p->is_recentred = false;
     p->is_cursor_awaited = page->fov != LM_FOV_NORM && !p->lent.cursor->is_placed;
     const struct lm_sector_command command = {
         .mode = page->mode,
@@ -68,16 +69,15 @@ static struct lm_platform platform_of(const struct lm_picture *p, uint64_t now_u
     };
 }
 
-/* Centre the window on the cursor before each sweep, and shift what is drawn accordingly. */
+/* Centre the window on the cursor before each sweep, and shift what is drawn accordingly. That
+ * takes as long as the geometry of the sweep; so they are done in two steps. The view between them
+ * has the new centre and the old place of the antenna, which is what the shifted picture shows. */
 static void recentre(struct lm_picture *p)
 {
     struct lm_offset at;
     const struct lm_cursor *cursor = p->lent.cursor;
     const struct lm_frame square = lm_frame_square(&p->frame);
     const struct lm_offset middle = lm_view_middle(&p->view);
-    if (!cursor->is_placed || p->view.shape != LM_VIEW_WINDOW) {
-        return;
-    }
     if (lm_view_find(&p->view, cursor->position, &at)) {
         lm_plane_shift(&p->plane, &square, -lm_px_of_px_q8(at.x_px_q8 - middle.x_px_q8),
                        lm_px_of_px_q8(at.y_px_q8 - middle.y_px_q8));
@@ -85,6 +85,11 @@ static void recentre(struct lm_picture *p)
         lm_plane_clear(&p->plane, &p->frame);
     }
     p->sector.command.centre = cursor->position;
+}
+
+static bool needs_centre(const struct lm_picture *p)
+{
+    return !p->is_recentred && p->lent.cursor->is_placed && p->view.shape == LM_VIEW_WINDOW;
 }
 
 static struct lm_view view(const struct lm_picture *p);
@@ -105,8 +110,13 @@ static enum lm_sweep begin(struct lm_picture *p, uint64_t now_us)
     if (!lm_sector_is_at_edge(&p->sector)) {
         return LM_SWEEP_GOES_ON;
     }
+    if (needs_centre(p)) {
+        recentre(p);
+        p->is_recentred = true;
+        return LM_SWEEP_BEGUN_AT_COST;
+    }
+    p->is_recentred = false;
     const struct lm_platform platform = platform_of(p, now_us);
-    recentre(p);
     lm_sector_begin(&p->sector, &p->lent.map->tiles, &platform);
     lm_page_note_tilt(p->lent.page, p->sector.tilt);
     lm_coverage_judge(&p->coverage);

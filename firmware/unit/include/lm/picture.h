@@ -50,6 +50,8 @@ struct lm_picture {
 
     struct lm_sector sector;
     bool is_cursor_awaited; /* a window is selected, but swept as NORM until the cursor is placed */
+    bool is_recentred; /* the window's next sweep has its centre; its geometry is still the old one
+                        */
 
     struct lm_sar sar;
     struct lm_patch_painter painter;
