@@ -17,6 +17,7 @@ $(call host_library, realradar,    gis lib fixed firmware,                      
 $(call host_library, netem,        tracer gis lib fixed firmware,                       openblas fftw3)
 $(call host_library, nav,          lib,                                                 proj expat zlib libzip)
 $(call host_library, bus,          lib fixed firmware drivers)
+$(call host_library, dis,          nav lib fixed firmware drivers,                      libpcap)
 $(call host_library, scene,        lib,                                                 gdal)
 $(call host_library, reference,    lib fixed firmware.h,                                liblz4)
 $(call host_library, sim,          lib fixed firmware,                                  sdl2)

@@ -59,6 +59,7 @@ $(call unit_tests, host-sim/tracer,             tracer lib fixed firmware,      
 $(call unit_tests, host-sim/netem,              netem tracer lib fixed firmware)
 $(call unit_tests, host-sim/nav,                nav lib fixed firmware drivers,       nav)
 $(call unit_tests, host-sim/bus,                bus lib fixed firmware drivers)
+$(call unit_tests, host-sim/dis,                dis nav lib fixed firmware drivers,   ,         proj)
 $(call unit_tests, host-sim/scene,              scene lib)
 $(call unit_tests, host-sim/reference,          reference lib fixed firmware.h,      reference,     proj)
 $(call unit_tests, host-sim/sim,                sim lib fixed firmware)
