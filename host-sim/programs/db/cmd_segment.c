@@ -8,7 +8,9 @@
 #include "classify/learn.h"
 #include "classify/mlp_apply.h"
 #include "gis/class_raster.h"
+#include "gis/gdal_start.h"
 #include "gis/preview.h"
+#include "gis/sieve.h"
 #include "hs/error.h"
 #include "hs/png.h"
 #include "hs/progress.h"
@@ -27,9 +29,12 @@ static const struct hs_usage usage = {
         "pixel as a compressed GeoTIFF (Byte, 255 for no data) with the image's georeferencing and "
         "the class\n"
         "table's colours and names.\n\n"
-        "Look at the result (--picture) before going on: scattered errors do no harm and become "
-        "background\n"
-        "clutter; systematic ones call for more exemplars or for `landmass-db correct`. With "
+        "Specks, smaller than --sieve says, take the class around them: single wrong pixels stand "
+        "as bright\n"
+        "spots in a picture that is finer than the map. Look at the result (--picture) before "
+        "going on:\n"
+        "scattered errors become background clutter; systematic ones call for more exemplars or "
+        "for `landmass-db correct`. With "
         "exemplars\n"
         "given, --report lists the polygons and the squares of the image that came out worst.\n\n"
         "Example:\n"
@@ -41,8 +46,8 @@ struct options {
     struct db_image_options image;
     struct db_exemplar_options known; /* for the report */
     const char *classes, *net, *out, *picture, *report, *reject;
-    double sure;
-    struct hs_list picture_bands;
+    double sure, sieve;
+    struct hs_list picture_bands, spare;
     long square;
 };
 
@@ -71,6 +76,16 @@ static bool read_options(struct options *o, int argc, char **argv, int *exit_cod
         {"sure", HS_REAL, &o->sure, 0.5, 0.999, "P",
          "With --reject: also to pixels whose class is less than so probable against the next.",
          false},
+        {"sieve", HS_REAL, &o->sieve, 0, 10000, "M2",
+         "Regions of one class that cover less ground than so many square metres, corners counted "
+         "as\n"
+         "borders, take the class of their largest neighbour; 0 keeps them all. Pixels that are "
+         "larger\n"
+         "are none.",
+         false},
+        {"spare", HS_LIST, &o->spare, 0, 0, "CLASS,..",
+         "Classes whose smallest regions stay: what people built, say, where a lone house counts.",
+         false},
         {"report", HS_FOLDER, &o->report, 0, 0, "FOLDER",
          "Write where exemplars (below) came out wrong: regions.csv, squares.csv, worst.txt, "
          "confusion.csv.",
@@ -91,15 +106,18 @@ struct work {
     struct db_judge judge;
     uint8_t rejected_class; /* what rejected pixels become */
     struct db_raster image;
-    struct db_raster_out out;
+    struct db_raster_out raw, out; /* as the network says, and as the sieve leaves it */
+    int speck_pixels;              /* regions of fewer are specks */
+    bool is_spared[DB_CLASS_MAX];
     struct db_exemplars exemplars;
     uint8_t *given; /* owned: class of each exemplar */
     size_t given_count;
     struct db_preview original, classes;
     int shown[3]; /* bands of the picture, from 0 */
     int shown_count;
-    uint64_t counts[256]; /* pixels of each class, without those rejected */
-    uint64_t rejected;
+    uint64_t counts[256];  /* pixels of each class by the network, without those rejected */
+    uint64_t written[256]; /* pixels of each class in the raster */
+    uint64_t rejected, sieved;
     double seconds; /* of the network alone */
 };
 
@@ -174,13 +192,29 @@ static int find_reject_class(struct work *w)
     return 0;
 }
 
+static int find_spared(struct work *w)
+{
+    const struct hs_list *names = &w->options->spare;
+    for (int i = 0; i < names->count; i++) {
+        const int c = db_class_find(&w->table, names->items[i]);
+        if (c < 0) {
+            char known[DB_CLASS_MAX * DB_NAME_SIZE];
+            db_class_names(&w->table, known, sizeof known);
+            return hs_error("--spare", "name one of them", "there is no class `%s`; there are %s",
+                            names->items[i], known);
+        }
+        w->is_spared[c] = true;
+    }
+    return 0;
+}
+
 static int prepare(struct work *w)
 {
     const struct options *o = w->options;
     if (db_class_table_read(&w->table, o->classes) != 0 || db_net_read(&w->net, o->net) != 0 ||
         db_net_classes(&w->net, &w->table, o->net, w->class_of_output) != 0 ||
-        find_reject_class(w) != 0 || db_apply_init(&w->applied, &w->net) != 0 ||
-        db_image_open(&w->image, &o->image) != 0) {
+        find_reject_class(w) != 0 || find_spared(w) != 0 ||
+        db_apply_init(&w->applied, &w->net) != 0 || db_image_open(&w->image, &o->image) != 0) {
         return -1;
     }
     if (w->image.band_count != w->net.band_count) {
@@ -195,7 +229,11 @@ static int prepare(struct work *w)
                        db_preview_init(&w->classes, &w->image.grid, 1) != 0)) {
         return -1;
     }
-    return db_class_raster_create(&w->out, o->out, &w->image.grid, &w->table);
+    w->speck_pixels = db_sieve_pixels(&w->image.grid, o->sieve);
+    return db_class_raster_create(&w->raw, o->out, &w->image.grid, &w->table) != 0 ||
+                   db_class_raster_create(&w->out, o->out, &w->image.grid, &w->table) != 0
+               ? -1
+               : 0;
 }
 
 struct block {
@@ -243,22 +281,14 @@ static void keep_for_report(struct work *w, const struct block *b)
     }
 }
 
-/* The classes pass through the planes, which are done with by then. */
-static void keep_for_picture(struct work *w, const struct block *b)
+static void keep_original(struct work *w, const struct block *b)
 {
     const int width = w->image.grid.width;
     const size_t count = (size_t)b->rows * (size_t)width;
-    if (!w->options->picture) {
-        return;
-    }
-    for (int i = 0; i < w->shown_count; i++) {
+    for (int i = 0; w->options->picture && i < w->shown_count; i++) {
         db_preview_add(&w->original, i, b->y, b->rows, width,
                        b->planes + (size_t)w->shown[i] * count, b->valid);
     }
-    for (size_t i = 0; i < count; i++) {
-        b->planes[i] = (float)b->classes[i];
-    }
-    db_preview_add(&w->classes, 0, b->y, b->rows, width, b->planes, b->valid);
 }
 
 static int segment_block(struct work *w, const struct block *b)
@@ -267,9 +297,64 @@ static int segment_block(struct work *w, const struct block *b)
         return -1;
     }
     classify(w, b);
+    keep_original(w, b);
+    return db_raster_write(&w->raw, b->y, b->rows, b->classes);
+}
+
+/* ---- the sieve ---- */
+
+/* Take the rows of the block from a raster that is being written. */
+static int read_back(const struct work *w, const struct db_raster_out *from, const struct block *b,
+                     uint8_t *classes)
+{
+    const int width = w->image.grid.width;
+    CPLErrorReset();
+    if (GDALRasterIO(GDALGetRasterBand(from->dataset, 1), GF_Read, 0, b->y, width, b->rows, classes,
+                     width, b->rows, GDT_Byte, 0, 0) != CE_None) {
+        return hs_error(from->path, "free some space and run again", "cannot be read again: %s",
+                        db_gdal_complaint());
+    }
+    return 0;
+}
+
+/* `reject` holds what the network said: what is spared has it again. */
+static int restore_spared(struct work *w, const struct block *b)
+{
+    const size_t count = (size_t)b->rows * (size_t)w->image.grid.width;
+    uint64_t restored = 0;
+    for (size_t i = 0; i < count; i++) {
+        const uint8_t raw = b->reject[i];
+        if (raw != b->classes[i] && raw < DB_CLASS_MAX && w->is_spared[raw]) {
+            b->classes[i] = raw;
+            restored++;
+        }
+        w->sieved += raw != b->classes[i];
+        w->written[b->classes[i]]++;
+    }
+    return restored ? db_raster_write(&w->out, b->y, b->rows, b->classes) : 0;
+}
+
+static void keep_classes(struct work *w, const struct block *b)
+{
+    const size_t count = (size_t)b->rows * (size_t)w->image.grid.width;
     keep_for_report(w, b);
-    keep_for_picture(w, b);
-    return db_raster_write(&w->out, b->y, b->rows, b->classes);
+    if (w->options->picture) {
+        for (size_t i = 0; i < count; i++) {
+            b->planes[i] = (float)b->classes[i];
+            b->valid[i] = b->classes[i] != DB_CLASS_NODATA;
+        }
+        db_preview_add(&w->classes, 0, b->y, b->rows, w->image.grid.width, b->planes, b->valid);
+    }
+}
+
+static int finish_block(struct work *w, const struct block *b)
+{
+    if (read_back(w, &w->raw, b, b->reject) != 0 || read_back(w, &w->out, b, b->classes) != 0 ||
+        restore_spared(w, b) != 0) {
+        return -1;
+    }
+    keep_classes(w, b);
+    return 0;
 }
 
 static void free_block(struct block *b)
@@ -298,6 +383,23 @@ static int alloc_block(const struct work *w, struct block *b, size_t count)
     return hs_error(w->image.name, NULL, "out of memory");
 }
 
+/* Call `work` with each block of rows. */
+static int for_all_blocks(struct work *w, struct block *b, const char *label, int rows,
+                          int (*work)(struct work *w, const struct block *b))
+{
+    const struct db_grid *grid = &w->image.grid;
+    struct hs_progress progress;
+    hs_progress_begin(&progress, label, (uint64_t)grid->height);
+    int result = 0;
+    for (b->y = 0; result == 0 && b->y < grid->height; b->y += rows) {
+        b->rows = b->y + rows < grid->height ? rows : grid->height - b->y;
+        result = work(w, b);
+        hs_progress_update(&progress, (uint64_t)(b->y + b->rows));
+    }
+    hs_progress_end(&progress);
+    return result;
+}
+
 static int segment(struct work *w)
 {
     const struct db_grid *grid = &w->image.grid;
@@ -307,15 +409,13 @@ static int segment(struct work *w)
     if (alloc_block(w, &b, (size_t)rows * (size_t)grid->width) != 0) {
         return -1;
     }
-    struct hs_progress progress;
-    hs_progress_begin(&progress, "segment", (uint64_t)grid->height);
-    int result = 0;
-    for (b.y = 0; result == 0 && b.y < grid->height; b.y += rows) {
-        b.rows = b.y + rows < grid->height ? rows : grid->height - b.y;
-        result = segment_block(w, &b);
-        hs_progress_update(&progress, (uint64_t)(b.y + b.rows));
+    int result = for_all_blocks(w, &b, "segment", rows, segment_block);
+    if (result == 0) {
+        result = db_sieve(&w->out, &w->raw, w->speck_pixels);
     }
-    hs_progress_end(&progress);
+    if (result == 0) {
+        result = for_all_blocks(w, &b, "write", rows, finish_block);
+    }
     free_block(&b);
     return result;
 }
@@ -367,10 +467,13 @@ static int write_report(const struct work *w)
 /* The classes as they stand in the raster, then how far to believe them. */
 static void print_counts(struct work *w)
 {
-    uint64_t written[256];
-    memcpy(written, w->counts, sizeof written);
-    written[w->rejected_class] += w->rejected;
-    db_class_counts_print(&w->table, written);
+    db_class_counts_print(&w->table, w->written);
+    printf("sieve: %llu pixels took the class around them, in regions of fewer than %d pixels\n",
+           (unsigned long long)w->sieved, w->speck_pixels);
+    hs_report_object("sieve");
+    hs_report_put("pixels", w->sieved);
+    hs_report_put("speck_pixels", w->speck_pixels);
+    hs_report_close();
     db_judge_report(&w->judge, w->image.name, &w->table, w->counts);
     if (w->options->reject) {
         printf("rejected: %llu pixels of %llu became %s; %llu outside the range, %llu unsure\n",
@@ -388,7 +491,9 @@ static void print_counts(struct work *w)
 
 static int run(struct work *w)
 {
-    if (prepare(w) != 0 || segment(w) != 0 || db_raster_commit(&w->out) != 0) {
+    const bool is_written = prepare(w) == 0 && segment(w) == 0 && db_raster_commit(&w->out) == 0;
+    db_raster_abort(&w->raw);
+    if (!is_written) {
         db_raster_abort(&w->out);
         return HS_EXIT_FAILED;
     }
@@ -422,7 +527,7 @@ static bool has_sense(const struct options *o)
 
 int db_cmd_segment(int argc, char **argv)
 {
-    struct options options = {.known = {.field = "class"}, .square = 64, .sure = 0.5};
+    struct options options = {.known = {.field = "class"}, .square = 64, .sure = 0.5, .sieve = 60};
     int exit_code;
     struct work *w = calloc(1, sizeof *w);
     if (!w) {
@@ -442,6 +547,7 @@ int db_cmd_segment(int argc, char **argv)
     db_net_free(&w->net);
     hs_list_free(&options.image.paths);
     hs_list_free(&options.picture_bands);
+    hs_list_free(&options.spare);
     hs_list_free(&options.known.ignore);
     free(w);
     return exit_code;

@@ -135,6 +135,69 @@ TEST(a_scene_comes_out_as_it_was_made_with_its_holes)
     assert_int_equal(support_run("! ls %s | grep unfinished", fixture_path("")), 0);
 }
 
+/* Set a rectangle of the second scene to what a town looks like. */
+static void put_town(float bands[2][WIDTH * HEIGHT], int x, int y, int width, int height)
+{
+    for (int i = 0; i < width * height; i++) {
+        const int at = (y + i / width) * WIDTH + x + i % width;
+        bands[0][at] = 120;
+        bands[1][at] = 100;
+    }
+}
+
+/* Field with towns of 1, 4, 2 (touching at corners alone) and 5 pixels of 1 m2, and a hole of one
+ * pixel without data, in which nothing may grow. */
+static void write_specks(void)
+{
+    static float bands[2][WIDTH * HEIGHT];
+    struct db_grid grid = fixture_grid(WIDTH, HEIGHT);
+    for (int i = 0; i < WIDTH * HEIGHT; i++) {
+        bands[0][i] = 40;
+        bands[1][i] = 90;
+    }
+    put_town(bands, 5, 5, 1, 1);
+    put_town(bands, 10, 10, 2, 2);
+    put_town(bands, 20, 20, 1, 1);
+    put_town(bands, 21, 21, 1, 1);
+    put_town(bands, 30, 30, 5, 1);
+    bands[0][40 * WIDTH + 40] = bands[1][40 * WIDTH + 40] = 0;
+    fixture_raster("specks1.tif", &grid, GDT_Byte, bands[0], 0);
+    fixture_raster("specks2.tif", &grid, GDT_Byte, bands[1], 0);
+    OSRDestroySpatialReference(grid.crs);
+}
+
+static int towns_after(const char *options, uint8_t *found)
+{
+    assert_int_equal(fixture_run(NULL, 0, "segment --image %s,%s --classes %s --net %s --out %s %s",
+                                 fixture_path("specks1.tif"), fixture_path("specks2.tif"),
+                                 fixture_path("scene.classes"), fixture_path("scene.net"),
+                                 fixture_path("sieved.tif"), options),
+                     0);
+    read_classes("sieved.tif", found);
+    int towns = 0;
+    for (int i = 0; i < WIDTH * HEIGHT; i++) {
+        assert_true((found[i] == 255) == (i == 40 * WIDTH + 40));
+        towns += found[i] == 2;
+    }
+    return towns;
+}
+
+TEST(specks_take_the_class_around_them_unless_they_are_spared)
+{
+    static uint8_t found[WIDTH * HEIGHT];
+    train_scene("scene.net");
+    write_specks();
+    assert_int_equal(towns_after("--sieve 0", found), 12);
+    assert_int_equal(towns_after("", found), 0);
+    assert_int_equal(towns_after("--sieve 5", found), 5);
+    assert_true(found[30 * WIDTH + 34] == 2 && found[10 * WIDTH + 10] == 0);
+    assert_int_equal(towns_after("--sieve 2", found), 11);
+    assert_int_equal(towns_after("--sieve 5 --spare field,town", found), 12);
+    assert_true(fixture_fails(HS_EXIT_FAILED, "there is no class `castle`; there are field",
+                              "segment " SCENE " --net %s --out %s --spare castle", SCENE_PATHS,
+                              fixture_path("scene.net"), fixture_path("never.tif")));
+}
+
 TEST(one_seed_gives_one_net_byte_for_byte)
 {
     train_scene("a.net");

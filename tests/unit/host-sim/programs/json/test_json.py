@@ -251,6 +251,8 @@ def db_segment():
     rejected, of, outside, unsure = find(r"^rejected: (\d+) pixels of (\d+) became nodata; (\d+) outside the range, (\d+) uns", text)
     assert r["rejected"] == {"pixels": rejected, "outside": outside, "unsure": unsure, "became": "nodata"} and of == 512 * 512
     assert r["pixels_without_data"] == rejected > 0
+    pixels, fewer = find(r"^sieve: (\d+) pixels took the class around them, in regions of fewer than (\d+) pixels", text)
+    assert r["sieve"] == {"pixels": pixels, "speck_pixels": fewer} and pixels > 0
     share, band = find(r"^outside the range of the training: ([\d.]+) % of the pixels; most in band (\d+)", text)
     assert near(100 * r["outside_share"], share, 0.1) and r["outside_worst_band"] == band
     name, share = find(r"^largest class: (\S+), ([\d.]+) %", text)
