@@ -84,9 +84,10 @@ static uint16_t decimetres(double metres)
 static uint8_t roof_code(const struct reading *r, const struct box *box)
 {
     const double roof_m = 20;
+    const double radian = 3.14159265358979323846 / 180;
     return image_gamma_code(db_reflect_assign_cell(&r->settings->laws[r->structure],
-                                                   r->settings->seed, box->latitude, box->longitude,
-                                                   roof_m));
+                                                   r->settings->seed, radian * box->latitude,
+                                                   radian * box->longitude, roof_m));
 }
 
 static int add_box(struct reading *r, const struct box *box)
@@ -116,6 +117,7 @@ static int add_box(struct reading *r, const struct box *box)
             build_facing_number(r->settings->facing, (uint8_t)r->structure, box->turn_deg);
         at->item.gamma_code = roof_code(r, box);
     }
+    r->detail->reach_m = fmax(r->detail->reach_m, hypot(box->length_m, box->width_m) / 2);
     r->detail->count++;
     return 0;
 }

@@ -1,6 +1,7 @@
 #include "build/tile.h"
 
 #include "build/canopy.h"
+#include "build/footprints.h"
 #include "hs/error.h"
 #include "image/codes.h"
 
@@ -316,6 +317,7 @@ static void finish_inputs(struct build_context *b, const struct image_frame *f,
 {
     const double north_m = (double)f->latitude_step * IMAGE_METRES_PER_BAM;
     fill_by_rule(b, f, t, is_below);
+    build_footprints(b, f, &t->ground);
     count_cells(b, f, t, is_below);
     build_towns_mark(t->ground.cells, &b->classes, north_m, t->built);
     build_canopy(b, f, &t->ground);

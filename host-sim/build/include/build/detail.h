@@ -43,6 +43,7 @@ struct build_detail {
     struct build_detail_record *records; /* owned; one a tile, by row and column */
     uint32_t record_count;
     uint8_t side_log2; /* of a tile of LOD 0, BAM of latitude */
+    double reach_m;    /* no corner of an item lies farther from its middle */
 };
 
 /* Where the detail of a tile lies in the section, in units of LM_DETAIL_UNIT_BYTES. */

@@ -6,6 +6,7 @@
 #include "check.h"
 #include "fx/crc32c.h"
 #include "hs/error.h"
+#include "image/codes.h"
 #include "lm/db.h"
 #include "lm/detail_reader.h"
 #include "memory_flash.h"
@@ -220,7 +221,7 @@ static struct lm_tile_cache tiles;
 static struct lm_detail_reader reader;
 static uint8_t *bytes;
 
-static void build(const char *more)
+static void build_of(const char *land, const char *more)
 {
     const struct scene_raster terrain = {.width = 60,
                                          .height = 60,
@@ -229,11 +230,16 @@ static void build(const char *more)
                                          .type = GDT_Float32,
                                          .value = plain_m};
     scene_write("plain.tif", &terrain);
-    assert_int_equal(scene_run("build --classes %s --terrain %s --land-class soil --water-class "
+    assert_int_equal(scene_run("build --classes %s --terrain %s --land-class %s --water-class "
                                "water --shift0 9 --out %s %s",
-                               scene_path(SCENE_CLASSES), scene_path("plain.tif"),
+                               scene_path(SCENE_CLASSES), scene_path("plain.tif"), land,
                                scene_path("detail.lmdb"), more),
                      0);
+}
+
+static void build(const char *more)
+{
+    build_of("soil", more);
 }
 
 /* An image with buildings all over, and one that lies outside; opened by the firmware, with all
@@ -356,6 +362,100 @@ TEST(an_image_without_detail_has_no_section)
     build("");
     assert_int_equal(image_open(&image, scene_path("detail.lmdb")), 0);
     assert_null(image.sections[LM_IMAGE_DETAIL]);
+    image_close(&image);
+}
+
+/* ---- footprints in the cells ---- */
+
+enum { HOUSES = 24 };
+static const double house_length_m = 31, house_width_m = 17;
+
+static double house_latitude(int i)
+{
+    return 46 + 0.0008 * (i / 6) + 0.00003 * i;
+}
+
+static double house_longitude(int i)
+{
+    return 11 + 0.0013 * (i % 6) + 0.00002 * i;
+}
+
+/* Metres from a place to the nearest house, 0 inside. */
+static double to_house_m(double latitude, double longitude)
+{
+    const double degree_m = 40007862.917 / 360;
+    double nearest = 1e9;
+    for (int i = 0; i < HOUSES; i++) {
+        const double y = degree_m * (latitude - house_latitude(i));
+        const double x = degree_m * (longitude - house_longitude(i)) * cos(latitude * M_PI / 180);
+        const double turn = 13.0 * i * M_PI / 180;
+        const double beyond = fabs(x * sin(turn) + y * cos(turn)) - house_length_m / 2;
+        const double aside = fabs(x * cos(turn) - y * sin(turn)) - house_width_m / 2;
+        nearest = fmin(nearest, hypot(fmax(beyond, 0), fmax(aside, 0)));
+    }
+    return nearest;
+}
+
+struct seen {
+    uint32_t roofs, beside, woods;
+};
+
+/* Check a cell by where its middle lies. Within 0.1 m of a border either side will do. */
+static void check_cell(struct seen *seen, uint16_t cell, double to_m)
+{
+    const double cell_m = ldexp(40007862.917, SHIFT0 - 32);
+    const int kind = image.db.classes.entry[image_cell_class(cell)].kind;
+    const uint16_t height_dm = image.db.classes.height_dm[image_cell_height(cell)];
+    if (to_m == 0) {
+        seen->roofs += kind == LM_KIND_STRUCTURE && height_dm == 80;
+    } else if (to_m > 0.1 && to_m < 0.75 * cell_m - 0.1) {
+        assert_true(kind == LM_KIND_TREES && height_dm == 0);
+        seen->beside++;
+    } else if (to_m > 0.75 * cell_m + 0.1) {
+        assert_int_equal(kind, LM_KIND_TREES);
+        seen->woods += height_dm > 40;
+    }
+}
+
+/* In a wood 12 m high, the cells of houses are roofs, those around them bare, and no others. The
+ * mast and the wall are too narrow for cells. */
+TEST(footprints_are_structures_and_no_tree_leans_on_them)
+{
+    char text[80 * (HOUSES + 2)] = "", more[400];
+    size_t n = 0;
+    for (int i = 0; i < HOUSES; i++) {
+        n += (size_t)snprintf(text + n, sizeof text - n, "building %.7f %.7f %g %g %d 8 flat\n",
+                              house_latitude(i), house_longitude(i), house_length_m, house_width_m,
+                              13 * i);
+    }
+    snprintf(text + n, sizeof text - n, "mast 46.005 11 20\nwall 46.006 11 46.006 11.001 5\n");
+    scene_text("houses.detail", text);
+    snprintf(more, sizeof more, "--detail %s", scene_path("houses.detail"));
+    build_of("trees", more);
+    assert_int_equal(image_open(&image, scene_path("detail.lmdb")), 0);
+    struct seen seen = {0};
+    const double side = ldexp(360, SHIFT0 + 6 - 32);
+    uint32_t inside = 0;
+    for (uint32_t row = (box.south + FX_BAM_90) >> (SHIFT0 + 6);
+         row <= (box.north + FX_BAM_90) >> (SHIFT0 + 6); row++) {
+        for (uint32_t column = box.west >> (SHIFT0 + 6); column <= box.east >> (SHIFT0 + 6);
+             column++) {
+            static uint16_t cells[LM_TILE_CELLS][LM_TILE_CELLS];
+            image_cells_decode(image_find_tile(&image, 0, row, column), cells);
+            for (int i = 0; i < LM_TILE_CELLS * LM_TILE_CELLS; i++) {
+                const int r = i / LM_TILE_CELLS, c = i % LM_TILE_CELLS;
+                const double to_m = to_house_m((row + (r + 0.5) / LM_TILE_CELLS) * side - 90,
+                                               (column + (c + 0.5) / LM_TILE_CELLS) * side);
+                inside += to_m == 0;
+                check_cell(&seen, cells[r][c], to_m);
+            }
+        }
+    }
+    print_message("# %u roofs of %u, %u beside, %u woods\n", seen.roofs, inside, seen.beside,
+                  seen.woods);
+    /* A border that runs through a middle by rounding is a cell or two of some 560. */
+    assert_true(inside > 500 && seen.roofs + 2 >= inside && seen.beside > 300);
+    assert_true(seen.woods > 100000);
     image_close(&image);
 }
 
