@@ -23,7 +23,7 @@ struct bench {
 /* Bus that the unit is connected to. */
 struct bench_bus {
     const struct lm_can *can;             /* borrowed */
-    const struct lm_bus_profile *profile; /* NULL: canas17 */
+    const struct lm_bus_profile *profile; /* NULL: the database's, or canas17 */
     uint8_t node;                         /* the unit's own CANaerospace node; 0: it only listens */
     bool is_heading_magnetic;             /* LM_BUS_HEADING is from magnetic north */
     bool tells_reports;                   /* it tells lm/canas_report.h as that node */

@@ -126,11 +126,13 @@ static bool take_device(const char *text, void *value)
 
 static bool take_profile(const char *text, void *value)
 {
-    const struct lm_bus_profile *profile = lm_bus_profile_named(lm_bus_profiles, text);
-    if (profile != NULL) {
+    const bool is_automatic = strcmp(text, "auto") == 0;
+    const struct lm_bus_profile *profile =
+        is_automatic ? NULL : lm_bus_profile_named(lm_bus_profiles, text);
+    if (profile != NULL || is_automatic) {
         *(const struct lm_bus_profile **)value = profile;
     }
-    return profile != NULL;
+    return profile != NULL || is_automatic;
 }
 
 static bool take_axis(const char *text, void *value)

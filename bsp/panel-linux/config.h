@@ -39,7 +39,8 @@ struct config_stick {
 struct config {
     char database[CONFIG_PATH], radar[CONFIG_PATH];
     char can[CONFIG_NAME];
-    const struct lm_bus_profile *can_profile;
+    const struct lm_bus_profile *can_profile; /* NULL: can_table, the database's, or canas17 */
+    char can_table[CONFIG_PATH];
     uint32_t can_node;
     uint32_t can_heading; /* 1: magnetic */
     uint32_t can_reports; /* 1: on */

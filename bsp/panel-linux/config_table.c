@@ -27,9 +27,14 @@ const struct config_row config_table[] = {
         "one that is built in. A record that cannot be used leaves the glass without a picture."),
     OPTION(CONFIG_TEXT, can, 0, 16, "none", "can", "INTERFACE | none", "can0",
            "SocketCAN interface of the avionics bus."),
-    OPTION(CONFIG_PROFILE, can_profile, 0, 0, NULL, "can.profile", "PROFILE", "canas17",
+    OPTION(CONFIG_PROFILE, can_profile, 0, 0, NULL, "can.profile", "PROFILE | auto", "auto",
            "What the bus's frames mean: CANaerospace 1.7 (canas17), XCSoar's dialect (xcsoar), the "
-           "table that was built in (generic), or another profile of docs/bus.md."),
+           "table that was built in (generic), or another profile of docs/bus.md. auto: can.table, "
+           "the database's table, or canas17 where there is neither."),
+    OPTION(CONFIG_PATH_TO, can_table, 0, ROOM(can_table), "none", "can.table", "PATH | none",
+           "none",
+           "Table of the bus, a text (docs/bus.md). With one that cannot be read the bus is not "
+           "heard."),
     OPTION(
         CONFIG_NUMBER, can_node, 0, 255, NULL, "can.node", "0..255", "0",
         "The panel's node on a CANaerospace bus, where it answers requests; 0: it only listens."),

@@ -10,7 +10,8 @@ enum config_kind {
     CONFIG_PATH_TO, /* a text that begins with '/' */
     CONFIG_NUMBER,
     CONFIG_CHOICE,  /* stored as the number of the word */
-    CONFIG_PROFILE, /* a bus profile, by its name in lm_bus_profiles; stored as a pointer */
+    CONFIG_PROFILE, /* a bus profile, by its name in lm_bus_profiles; stored as a pointer.
+                     * auto: NULL */
     CONFIG_SIZE,
     CONFIG_DEVICE,
     CONFIG_AXIS,
@@ -27,7 +28,7 @@ struct config_row {
     const char *words; /* CHOICE: its words; TEXT, PATH_TO, SIZE: the word for an empty one */
 };
 
-enum { CONFIG_ROWS = 101 };
+enum { CONFIG_ROWS = 102 };
 extern const struct config_row config_table[CONFIG_ROWS];
 
 #endif

@@ -3,6 +3,8 @@
 #include "panel.h"
 #include "report.h"
 
+#include "bus/table_text.h"
+#include "hs/error.h"
 #include "lm/version.h"
 
 #include <errno.h>
@@ -130,18 +132,26 @@ static int read_config(struct command *c, struct config *config)
     return (int)config_read(config, text, (size_t)size, report_line, c);
 }
 
+/* What --check finds in the files that the configuration names, beside its own lines. */
+static bool are_files_sound(const struct config *config)
+{
+    static struct bus_table table;
+    return config->can_table[0] == '\0' || bus_table_load(&table, config->can_table) == 0;
+}
+
 int main(int argc, char **argv)
 {
     struct config config;
     struct panel panel;
     struct command command;
+    hs_set_program("landmass-panel");
     const int code = read_command_line(&command, argc, argv);
     if (code >= 0) {
         return code;
     }
     const int wrong = read_config(&command, &config);
     if (wrong < 0 || command.is_check) {
-        return wrong == 0 ? EXIT_DONE : EXIT_FAILED;
+        return wrong == 0 && are_files_sound(&config) ? EXIT_DONE : EXIT_FAILED;
     }
     if (wrong > 0) {
         report(REPORT_WARNING, "%s: %d wrong lines; their options keep the defaults", command.path,

@@ -125,12 +125,20 @@ static const struct lm_flash *choose_radar(struct panel *p, const struct lm_flas
     return flash;
 }
 
+/* Open the bus behind the unit, which knows by now what its frames mean. A panel that was told its
+ * table hears nothing without it. */
+static void start_bus(struct panel *p, bool has_table)
+{
+    const struct lm_bus_profile *profile = p->unit->bus.profile;
+    bus_open(&p->bus, has_table ? p->config->can : "", profile, p->zero_us);
+    report(REPORT_INFO, "bus: %s: table %s", p->config->can, profile->name);
+}
+
 static int start_unit(struct panel *p, const struct lm_flash *flash)
 {
     const size_t pixels = (size_t)p->glass.port.width_px * p->glass.port.height_px;
     p->board = (struct lm_board){.flash = flash,
                                  .can = &p->bus.port,
-                                 .bus_profile = p->config->can_profile,
                                  .bus_node = (uint8_t)p->config->can_node,
                                  .is_heading_magnetic = p->config->can_heading != 0,
                                  .tells_reports = p->config->can_reports != 0,
@@ -151,7 +159,14 @@ static int start_unit(struct panel *p, const struct lm_flash *flash)
         return -1;
     }
     p->board.flash = choose_radar(p, flash);
+    p->board.bus_profile = p->config->can_profile;
+    const char *const table = p->config->can_table;
+    const bool has_table = table[0] == '\0' || bus_table_load(&p->table, table) == 0;
+    if (table[0] != '\0' && has_table) {
+        p->board.bus_profile = &p->table.profile;
+    }
     start_with_flash(p, p->board.flash);
+    start_bus(p, has_table);
     p->flash.patience_us = 0;
     return 0;
 }
@@ -185,11 +200,11 @@ int panel_open(struct panel *p, const struct config *config)
     memset(p, 0, sizeof *p);
     p->config = config;
     p->file.descriptor = p->mtd.fd = p->bezel.gpio.fd = p->bezel.backlight_fd = -1;
+    p->bus.socket.fd = -1;
     p->zero_us = monotonic_us();
     p->signals = open_signals();
     p->controls = (struct lm_controls){.ctx = p, .next = next_control};
     const struct lm_flash *flash = open_flash(p);
-    bus_open(&p->bus, config->can, config->can_profile, p->zero_us);
     bezel_open(&p->bezel, config, panel_now_us(p));
     hand_open(&p->hand, config);
     int status = glass_open(&p->glass, config, panel_now_us(p));

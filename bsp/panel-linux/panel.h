@@ -5,6 +5,7 @@
 
 #include "bezel.h"
 #include "bus.h"
+#include "bus/table_text.h"
 #include "config.h"
 #include "display.h"
 #include "drv/flash_file.h"
@@ -31,8 +32,9 @@ struct panel {
     struct hand hand;
     struct lm_controls controls;
     struct drv_watchdog watchdog;
-    int signals;           /* file descriptor of signalfd */
-    struct lm_radar radar; /* of the configuration, where it names one */
+    int signals;            /* file descriptor of signalfd */
+    struct lm_radar radar;  /* of the configuration, where it names one */
+    struct bus_table table; /* likewise */
     struct lm_board board;
     struct lm_unit *unit; /* owned */
     uint32_t flags_told;  /* enum lm_flag, as reported last */

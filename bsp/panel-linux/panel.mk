@@ -1,9 +1,13 @@
 # landmass-panel: the installed cockpit panel. Built with the tests for this machine, and by `make panel` for ARCH.
 LIB_panel := $(O)/libpanel.a
 $(call archive, $(LIB_panel), $(filter-out %/main.c,$(wildcard bsp/panel-linux/*.c)))
+# It reads tables of the bus, by the reader of the tools.
+PANEL_READER := $(call objs,host-sim/bus/table_text.c $(patsubst %,host-sim/lib/%.c,atomic_file error input_file \
+    json number output_path report))
+$(O)/bsp/panel-linux/%.o $(O)/sanitized/bsp/panel-linux/%.o: EXTRA_CFLAGS := -Ihost-sim/bus/include -Ihost-sim/lib/include
 PANEL := $(O)/bin/landmass-panel
 PROGRAMS += $(PANEL)
-$(PANEL): $(O)/bsp/panel-linux/main.o $(LIB_panel) $(LIB_drivers) $(LIB_firmware) $(LIB_fixed)
+$(PANEL): $(O)/bsp/panel-linux/main.o $(PANEL_READER) $(LIB_panel) $(LIB_drivers) $(LIB_firmware) $(LIB_fixed)
 $(PANEL): LDLIBS = $(LINUX_LIBS)
 
 .PHONY: panel-program panel-package

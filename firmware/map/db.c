@@ -227,12 +227,13 @@ static int read_geoid(struct lm_db *db, const struct lm_image_header *h, uint32_
     return lm_geoid_is_sound(&db->geoid) ? LM_OK : LM_ERR_CORRUPT;
 }
 
-/* The radar table is optional. Who reads the record checks it. */
-static int find_radar(struct lm_db *db, const struct lm_image_header *h)
+/* The tables of radar and bus are optional. Who reads the record checks it. */
+static int find_record(const struct lm_image_header *h, enum lm_image_section_type type,
+                       uint64_t *offset, uint32_t *bytes)
 {
-    const struct lm_image_section *s = section_of_type(h, LM_IMAGE_RADAR);
-    db->radar_offset = s ? s->offset : 0;
-    db->radar_bytes = s ? (uint32_t)s->bytes : 0;
+    const struct lm_image_section *s = section_of_type(h, type);
+    *offset = s ? s->offset : 0;
+    *bytes = s ? (uint32_t)s->bytes : 0;
     return !s || (is_inside(h, s) && s->bytes > 0 && s->bytes <= UINT32_MAX) ? LM_OK
                                                                              : LM_ERR_CORRUPT;
 }
@@ -309,7 +310,10 @@ int lm_db_open(struct lm_db *db, const struct lm_flash *flash, uint32_t poll_lim
         tables = find_tiles(db, &h);
     }
     if (tables == LM_OK) {
-        tables = find_radar(db, &h);
+        tables = find_record(&h, LM_IMAGE_RADAR, &db->radar_offset, &db->radar_bytes);
+    }
+    if (tables == LM_OK) {
+        tables = find_record(&h, LM_IMAGE_BUS, &db->bus_offset, &db->bus_bytes);
     }
     if (tables == LM_OK) {
         tables = read_targets_head(db, &h, poll_limit);

@@ -41,13 +41,16 @@ int lm_unit_init(struct lm_unit *u, const struct lm_board *board)
         return LM_ERR_RANGE;
     }
     u->board = board;
-    const struct lm_unit_map_lent map = {board->flash, board->tile_pool, board->tile_pool_bytes,
-                                         board->flash_poll_limit, board->radar};
+    const struct lm_unit_map_lent map = {board->flash,           board->tile_pool,
+                                         board->tile_pool_bytes, board->flash_poll_limit,
+                                         board->radar,           board->bus_profile != NULL};
     const int status = lm_unit_map_open(&u->map, &map);
     if (status != LM_OK) {
         return status;
     }
-    const struct lm_bus_profile *bus = board->bus_profile ? board->bus_profile : &lm_bus_canas17;
+    const struct lm_bus_profile *bus = board->bus_profile ? board->bus_profile
+                                       : u->map.bus       ? u->map.bus
+                                                          : &lm_bus_canas17;
     lm_bus_init(&u->bus, bus);
     lm_nav_init(&u->nav);
     u->nav.is_heading_magnetic = board->is_heading_magnetic;

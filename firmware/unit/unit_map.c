@@ -1,5 +1,7 @@
 #include "lm/unit_map.h"
 
+#include <stddef.h>
+
 #include "fx/mem.h"
 #include "fx/sat.h"
 #include "lm/radar_record.h"
@@ -54,6 +56,25 @@ static int read_radar(struct lm_unit_map *m, uint32_t poll_limit)
     return status;
 }
 
+/* Read the image's bus table. The pool, in which no tile is yet, has room for any record. */
+static int read_bus(struct lm_unit_map *m, const struct lm_unit_map_lent *lent)
+{
+    const uint32_t bytes = m->db.bus_bytes;
+    if (bytes == 0 || lent->has_bus_profile) {
+        return LM_OK;
+    }
+    if (bytes > LM_BUS_RECORD_BYTES_MAX || bytes > lent->tile_pool_bytes) {
+        return LM_ERR_CORRUPT;
+    }
+    int status =
+        lm_db_read(m->db.flash, m->db.bus_offset, lent->tile_pool, bytes, lent->flash_poll_limit);
+    if (status == LM_OK) {
+        status = lm_bus_unpack(&m->bus_of_image, lent->tile_pool, bytes);
+    }
+    m->bus = status == LM_OK ? &m->bus_of_image.profile : NULL;
+    return status;
+}
+
 /* Open the tables, and see that the radar is the one for this ground. */
 static int open_tables(struct lm_unit_map *m, const struct lm_unit_map_lent *lent)
 {
@@ -62,6 +83,9 @@ static int open_tables(struct lm_unit_map *m, const struct lm_unit_map_lent *len
     int status = lm_db_open(&m->db, lent->flash, lent->flash_poll_limit);
     if (status == LM_OK && !lent->radar && m->db.radar_bytes != 0) {
         status = read_radar(m, lent->flash_poll_limit);
+    }
+    if (status == LM_OK) {
+        status = read_bus(m, lent);
     }
     return status != LM_OK || m->db.sensor == m->radar->sensor ? status : LM_ERR_SENSOR;
 }

@@ -1,6 +1,7 @@
 #include "bus/table_text.h"
 
 #include "hs/error.h"
+#include "hs/input_file.h"
 #include "hs/number.h"
 #include "lm/canas.h"
 
@@ -68,7 +69,7 @@ static int read_bits(const struct reader *r, const char *key, const char *text,
         return wrong(r, "write the number of the first bit and how many, as 16+32",
                      "is not a run of bits within 64", key);
     }
-    *bits = (struct lm_bus_bits){(uint8_t)first, (uint8_t)count};
+    *bits = (struct lm_bus_bits){(uint16_t)first, (uint8_t)count};
     return 0;
 }
 
@@ -350,7 +351,7 @@ static int check_packed(const struct reader *r, struct item *item)
 {
     struct lm_bus_packing *p = &item->row.packing;
     const bool is_float = p->type == LM_BUS_FLOAT;
-    if (item->row.field >= LM_BUS_NAV_FIELDS && item->row.field < LM_BUS_SEA_STATE) {
+    if (lm_bus_is_of_set((enum lm_bus_field)item->row.field)) {
         return wrong(r, "weather needs framing canaerospace",
                      "comes in sets, which only message and service codes tell apart",
                      lm_bus_fields[item->row.field].name);
@@ -378,7 +379,7 @@ static int check_packed(const struct reader *r, struct item *item)
 
 static int check_canas(const struct reader *r, const struct item *item)
 {
-    if (item->row.id < 200 || item->row.id > 1999) {
+    if (item->row.id < LM_CANAS_ROW_FIRST || item->row.id > LM_CANAS_ROW_LAST) {
         return wrong(r, NULL, "is not from 200 to 1999", "id");
     }
     if (item->row.types == 0) {
@@ -643,5 +644,17 @@ int bus_table_read(struct bus_table *table, FILE *in, const char *path)
         status = wrong(&r, "a table has a profile's name and at least one item", "nothing there",
                        "table");
     }
+    return status;
+}
+
+int bus_table_load(struct bus_table *table, const char *path)
+{
+    FILE *in = hs_input_open(path, "r");
+    if (in == NULL) {
+        return hs_error(path, "name a table as docs/bus.md explains it", "cannot be opened: %s",
+                        strerror(errno));
+    }
+    const int status = bus_table_read(table, in, path);
+    fclose(in);
     return status;
 }

@@ -13,7 +13,7 @@ uint32_t image_entry_crc(uint32_t number, const struct lm_tile_entry *entry)
 const char *image_section_name(uint32_t type)
 {
     static const char *const names[LM_IMAGE_SECTION_TYPES] = {
-        "unknown", "CLASSES",    "BANDS", "DIRECTORY", "TILES", "MANIFEST",
-        "TARGETS", "SIGNATURES", "GEOID", "DETAIL",    "RADAR", "SEAL"};
+        "unknown",    "CLASSES", "BANDS",  "DIRECTORY", "TILES", "MANIFEST", "TARGETS",
+        "SIGNATURES", "GEOID",   "DETAIL", "RADAR",     "SEAL",  "BUS"};
     return type < LM_IMAGE_SECTION_TYPES ? names[type] : names[0];
 }

@@ -7,6 +7,7 @@
 #include "hs/signature_file.h"
 #include "hs/zero_bytes.h"
 #include "image/grid.h"
+#include "lm/bus_record.h"
 #include "lm/radar_check.h"
 #include "lm/radar_record.h"
 #include "lm/sensor.h"
@@ -387,6 +388,33 @@ static void read_radar(struct image *image, struct image_findings *f)
     }
 }
 
+/* So is the bus table. */
+static void read_bus(struct image *image, struct image_findings *f)
+{
+    const struct lm_image_section *s = image->sections[LM_IMAGE_BUS];
+    struct lm_bus_table table = {0};
+    if (!s) {
+        return;
+    }
+    image->db.bus_offset = s->offset;
+    image->db.bus_bytes = s->bytes > UINT32_MAX ? UINT32_MAX : (uint32_t)s->bytes;
+    const int status = lm_bus_unpack(&table, image->bytes + s->offset, image->db.bus_bytes);
+    if (status == LM_OK) {
+        memcpy(image->bus_name, table.name, sizeof image->bus_name);
+        return;
+    }
+    uint32_t row = 0;
+    if (status == LM_ERR_TABLE && lm_bus_profile_check(&table.profile, &row) != LM_OK && row != 0) {
+        image_find(f, s->offset, "section BUS: row %" PRIu32 " breaks what a bus table must keep",
+                   row);
+        return;
+    }
+    image_find(f, s->offset, "section BUS: %s",
+               status == LM_ERR_VERSION ? "a table of another version"
+               : status == LM_ERR_TABLE ? "a field or a framing that is not known"
+                                        : "its length or its checksum does not fit it");
+}
+
 /* Compressed records need room to be unpacked; an image that has none does without. */
 static int make_room(struct image *image, struct image_findings *f)
 {
@@ -419,6 +447,7 @@ int image_read_tables(struct image *image, struct image_findings *findings)
         return -1;
     }
     read_radar(image, findings);
+    read_bus(image, findings);
     if (read_geoid(image, findings) != 0) {
         return -1;
     }

@@ -309,7 +309,7 @@ static int finish(struct image_writer *w, const char *manifest)
     } extras[] = {
         {LM_IMAGE_TARGETS, &w->targets}, {LM_IMAGE_SIGNATURES, &w->signatures},
         {LM_IMAGE_GEOID, &w->geoid},     {LM_IMAGE_DETAIL, &w->detail},
-        {LM_IMAGE_RADAR, &w->radar},
+        {LM_IMAGE_RADAR, &w->radar},     {LM_IMAGE_BUS, &w->bus},
     };
     char *text = NULL;
     size_t bytes = 0;

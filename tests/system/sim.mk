@@ -1,5 +1,5 @@
 # The programs as their users run them.
-SYSTEM_SCRIPTS := $(addprefix $(O)/bin/tests/system/,test_sim test_cli test_signatures test_radar)
+SYSTEM_SCRIPTS := $(addprefix $(O)/bin/tests/system/,test_sim test_cli test_signatures test_radar test_bus_table)
 TESTS += $(SYSTEM_SCRIPTS)
 $(SYSTEM_SCRIPTS): $(O)/bin/tests/system/%: tests/system/%.sh tests/system/test_sim_tap.sh $(PROGRAMS)
 	@mkdir -p $(@D)

@@ -66,17 +66,6 @@ static int run(const struct command *c)
     return hs_atomic_commit(&file);
 }
 
-static int read_table(struct bus_table *table, const char *path)
-{
-    FILE *in = hs_input_open(path, "r");
-    if (in == NULL) {
-        return hs_error(path, NULL, "cannot be opened: %s", strerror(errno));
-    }
-    const int status = bus_table_read(table, in, path);
-    fclose(in);
-    return status;
-}
-
 static int find_profile(struct command *c)
 {
     c->profile = lm_bus_profile_named(lm_bus_profiles, c->profile_name);
@@ -122,7 +111,7 @@ static int run_command(const struct hs_usage *usage, int argc, char **argv)
     }
     static struct bus_table table;
     if (c.table_path != NULL) {
-        if (read_table(&table, c.table_path) != 0) {
+        if (bus_table_load(&table, c.table_path) != 0) {
             return HS_EXIT_FAILED;
         }
         c.profile = &table.profile;

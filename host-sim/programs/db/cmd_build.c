@@ -5,6 +5,7 @@
 #include "build/manifest.h"
 #include "build/pyramid.h"
 #include "build/targets.h"
+#include "bus/table_text.h"
 #include "gis/gdal_start.h"
 #include "gis/sensor_tag.h"
 #include "hs/error.h"
@@ -12,6 +13,7 @@
 #include "hs/options.h"
 #include "hs/report.h"
 #include "image/codes.h"
+#include "lm/bus_record.h"
 #include "lm/radar_record.h"
 #include "lm/sensor.h"
 #include "radar/text.h"
@@ -24,7 +26,8 @@
 #include <time.h>
 
 struct settings {
-    const char *classes, *radar, *class_raster, *reflectivity, *heights, *targets, *detail;
+    const char *classes, *radar, *bus_table, *class_raster, *reflectivity, *heights, *targets,
+        *detail;
     const char *map, *unknown_codes, *terrain_unit, *terrain_datum, *geoid_grid;
     struct hs_list terrain;
     double cell_m;
@@ -93,6 +96,9 @@ static bool read_settings(struct settings *s, int argc, char **argv, int *exit_c
         OPTION("radar", HS_INPUT, radar, 0, 0, "FILE",
                "table of the radar that shall look at the image, a text (landmass-radar);\n"
                "left out: the display uses its own"),
+        OPTION("bus-table", HS_INPUT, bus_table, 0, 0, "FILE",
+               "table of the bus that the display shall hear, a text (docs/bus.md);\nleft out: the "
+               "display uses its own"),
         OPTION("compress", HS_CHOICE, compression, 0, 0, IMAGE_COMPRESSION_WORDS,
                "how tiles are stored; none: larger, and the display unpacks nothing"),
         OPTION("sensor", HS_CHOICE, sensor, 0, 0, HS_SENSOR_WORDS,
@@ -534,11 +540,32 @@ struct extras {
     struct build_targets targets;           /* owned */
     void *targets_bytes, *signatures_bytes; /* owned */
     size_t targets_size, signatures_size;
+    uint8_t bus[LM_BUS_RECORD_BYTES_MAX]; /* record of the bus table */
+    size_t bus_bytes;                     /* 0: there is none */
 };
 
-static int read_extras(struct extras *e, const char *path)
+/* The bus table as a record. Its name goes with it, and there is less room than in the text. */
+static int read_bus_table(struct extras *e, const char *path)
 {
+    struct bus_table table;
+    if (bus_table_load(&table, path) != 0) {
+        return -1;
+    }
+    if (strlen(table.name) >= LM_BUS_PROFILE_NAME_SIZE) {
+        return hs_error(path, "shorten it", "the profile's name has more than %d bytes",
+                        LM_BUS_PROFILE_NAME_SIZE - 1);
+    }
+    e->bus_bytes = lm_bus_pack(&table.profile, e->bus);
+    return 0;
+}
+
+static int read_extras(struct extras *e, const struct settings *s)
+{
+    const char *const path = s->targets;
     *e = (struct extras){.targets_bytes = NULL};
+    if (s->bus_table && read_bus_table(e, s->bus_table) != 0) {
+        return -1;
+    }
     if (!path) {
         return 0;
     }
@@ -602,6 +629,9 @@ static int write_inputs(FILE *out, const struct build_context *b, const struct s
     }
     if (result == 0 && s->radar) {
         result = build_manifest_file(out, "radar", s->radar);
+    }
+    if (result == 0 && s->bus_table) {
+        result = build_manifest_file(out, "bus-table", s->bus_table);
     }
     if (result == 0 && s->geoid_grid) {
         result = strcmp(s->geoid_grid, "egm96") == 0
@@ -743,6 +773,7 @@ static int write_image(struct build_context *b, const struct settings *s, const 
     uint8_t radar[LM_RADAR_RECORD_BYTES];
     lm_radar_pack(&b->radar, radar);
     w.radar = (struct image_bytes){s->radar ? radar : NULL, sizeof radar};
+    w.bus = (struct image_bytes){extras->bus_bytes ? extras->bus : NULL, extras->bus_bytes};
     char *whole = NULL;
     if (asprintf(&whole, "%sheights-cut: %" PRIu64 "\n", manifest, b->counts.heights_cut) < 0) {
         image_writer_abort(&w);
@@ -911,7 +942,7 @@ static int build(const struct settings *s)
     struct report report = {0};
     struct extras extras;
     char *manifest = NULL;
-    int result = read_extras(&extras, s->targets) == 0 ? open_inputs(b, s) : -1;
+    int result = read_extras(&extras, s) == 0 ? open_inputs(b, s) : -1;
     if (result == 0) {
         manifest = make_manifest(b, s, &extras.targets.signatures);
         result = manifest ? write_image(b, s, manifest, &extras, &report) : -1;

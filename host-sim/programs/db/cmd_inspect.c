@@ -36,6 +36,7 @@ static void report_header(const struct image *image)
     hs_report_put("bytes", h->image_bytes);
     hs_report_put("sensor", lm_sensor_word(h->sensor));
     hs_report_put("radar", image->has_radar ? image->radar.name : NULL);
+    hs_report_put("bus_table", image->bus_name[0] ? image->bus_name : NULL);
     report_position("centre", (int32_t)h->centre_latitude, h->centre_longitude);
     hs_report_put("mean_elevation_m", h->mean_elevation_m_q6 / 64.0);
     hs_report_put("geoid_m", h->geoid_m_q6 / 64.0);
@@ -73,6 +74,8 @@ static void print_header(const struct image *image)
     printf("sensor          %s\n", lm_sensor_word(h->sensor));
     printf("radar           %s\n",
            image->has_radar ? image->radar.name : "none: the display's own");
+    printf("bus table       %s\n",
+           image->bus_name[0] ? image->bus_name : "none: the display's own");
     printf("centre          %.6f, %.6f\n", image_degrees((int32_t)h->centre_latitude),
            image_longitude_degrees(h->centre_longitude));
     printf("mean elevation  %.1f m above mean sea level\n", h->mean_elevation_m_q6 / 64.0);

@@ -2,6 +2,7 @@
 #include "bench.h"
 #include "options.h"
 
+#include "bus/table_text.h"
 #include "drv/can_log.h"
 #include "drv/can_socket.h"
 #include "hs/atomic_file.h"
@@ -30,7 +31,8 @@ enum { STEP_US = 2000, MALFORMED_SHOWN = 5 };
 
 struct sim {
     struct options options;
-    struct lm_radar radar; /* of --radar */
+    struct lm_radar radar;  /* of --radar */
+    struct bus_table table; /* of --table */
     struct script script;
     struct bench bench;
     FILE *log_file;
@@ -114,7 +116,7 @@ static int open_bus(struct sim *s)
         clock_gettime(CLOCK_MONOTONIC, &now);
         const uint64_t zero_us = (uint64_t)now.tv_sec * 1000000u + (uint64_t)now.tv_nsec / 1000u;
         struct lm_can_filter filters[LM_BUS_FILTERS_MAX];
-        const uint32_t count = lm_bus_filters(o->profile, filters);
+        const uint32_t count = lm_bus_filters(s->bench.unit->bus.profile, filters);
         if (drv_can_socket_open(&s->socket, o->can_interface, filters, count, zero_us) != LM_OK) {
             return hs_error(o->can_interface, NULL, "%s", s->socket.error);
         }
@@ -240,6 +242,7 @@ static void report_bus(const struct sim *s)
                     {LM_BUS_OUT_OF_RANGE, "refused_range"}};
     const struct lm_unit *u = s->bench.unit;
     hs_report_object("bus");
+    hs_report_put("profile", u->bus.profile->name);
     hs_report_put("frames", u->count.bus_frames);
     hs_report_put("malformed", s->log_file ? s->log.count.malformed : s->socket.count.malformed);
     hs_report_put("errors", u->count.bus_errors);
@@ -320,9 +323,10 @@ static void print_summary(const struct sim *s)
     const struct lm_unit *u = s->bench.unit;
     printf("frames %u, lines %u (%u dropped), pictures written %u\n", u->count.frames,
            u->count.lines, u->count.lines_dropped, s->pictures_written);
-    printf("bus: %u frames, %u malformed, %u errors; position jumps %u; commands refused %u\n",
-           u->count.bus_frames, s->log_file ? s->log.count.malformed : s->socket.count.malformed,
-           u->count.bus_errors, u->nav.position_jumps, u->count.commands_refused);
+    printf("bus: %s: %u frames, %u malformed, %u errors; position jumps %u; commands refused %u\n",
+           u->bus.profile->name, u->count.bus_frames,
+           s->log_file ? s->log.count.malformed : s->socket.count.malformed, u->count.bus_errors,
+           u->nav.position_jumps, u->count.commands_refused);
     const struct lm_bus *bus = &u->bus;
     printf(
         "     %u values, %u frames of other use; refused: %u length, %u node, %u type, %u no "
@@ -406,19 +410,22 @@ static int run(struct sim *s)
         return hs_error(o->png_folder, "check the folder above it", "cannot be made: %s",
                         strerror(errno));
     }
-    if ((o->radar && radar_text_read(&s->radar, o->radar) != 0) || open_bus(s) != 0 ||
-        open_sent_log(s) != 0) {
+    if ((o->radar && radar_text_read(&s->radar, o->radar) != 0) ||
+        (o->table && bus_table_load(&s->table, o->table) != 0)) {
         return -1;
     }
     hands_init(&s->hands, &s->script.port);
-    const struct bench_bus bus = {&s->can, o->profile, o->node, o->heading == 1, o->tells_reports};
+    const struct lm_bus_profile *const profile = o->table ? &s->table.profile : o->profile;
+    const struct bench_bus bus = {&s->can, profile, o->node, o->heading == 1, o->tells_reports};
     const struct bench_glass glass = {o->width_px, o->height_px, o->glass};
     const struct bench_scene scene = {o->database, o->radar ? &s->radar : NULL};
     if (bench_open(&s->bench, &scene, &glass, o->seed, &bus, &s->hands.port) != 0) {
         return hs_error(o->database, "landmass-db build makes a database", "%s", s->bench.error);
     }
     warn_of_database(s);
-    if (script_read(&s->script, o->script, s->bench.unit->map.radar) != 0 || open_bezel(s) != 0) {
+    /* What an interface lets through is what the unit hears, which the database may say. */
+    if (open_bus(s) != 0 || open_sent_log(s) != 0 ||
+        script_read(&s->script, o->script, s->bench.unit->map.radar) != 0 || open_bezel(s) != 0) {
         bench_close(&s->bench);
         return -1;
     }

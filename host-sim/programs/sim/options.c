@@ -98,7 +98,12 @@ static bool read_table(struct options *o, struct raw *raw, int argc, char **argv
         {"can", HS_TEXT, &o->can_interface, 0, 0, "IFACE",
          "take the bus from a SocketCAN interface, in real time", false},
         {"profile", HS_TAKER, &profile, 0, 0, "NAME",
-         "what the bus's frames mean: a profile of docs/bus.md (canas17)", false},
+         "what the bus's frames mean: a profile of docs/bus.md; left out: the table of the "
+         "database, "
+         "or canas17",
+         false},
+        {"table", HS_INPUT, &o->table, 0, 0, "FILE",
+         "a text table of the bus instead of a profile (docs/bus.md)", false},
         {"heading", HS_CHOICE, &o->heading, 0, 0, "true|magnetic",
          "what the bus's heading angle (321) is from; a magnetic one needs the variation (1121)",
          false},
@@ -152,6 +157,10 @@ static bool check(const struct options *o, int *exit_code)
         *exit_code = hs_options_wrong(&usage, "--bus", "and --can exclude each other");
         return false;
     }
+    if (o->table && o->profile) {
+        *exit_code = hs_options_wrong(&usage, "--table", "and --profile exclude each other");
+        return false;
+    }
     if (o->tells_reports && o->node == 0) {
         *exit_code =
             hs_options_wrong(&usage, "--reports", "needs the unit's number on the bus, --node");
@@ -171,7 +180,7 @@ static bool check(const struct options *o, int *exit_code)
 
 bool options_read(struct options *o, int argc, char **argv, int *exit_code)
 {
-    *o = (struct options){.profile = &lm_bus_canas17, .width_px = 768, .height_px = 768};
+    *o = (struct options){.width_px = 768, .height_px = 768};
     struct raw raw = {.every = 30, .seconds = NAN};
     if (!read_table(o, &raw, argc, argv, exit_code)) {
         return false;

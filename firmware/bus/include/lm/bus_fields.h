@@ -5,6 +5,7 @@
 #ifndef LM_BUS_FIELDS_H
 #define LM_BUS_FIELDS_H
 
+#include <stdbool.h>
 #include <stdint.h>
 
 /* Signs are those of ISO 1151, as CANaerospace prescribes: nose up, right wing down and nose right
@@ -85,6 +86,13 @@ extern const struct lm_bus_field_info lm_bus_fields[LM_BUS_FIELDS];
 static inline const struct lm_bus_scale *lm_bus_scale_of(enum lm_bus_field field)
 {
     return &lm_bus_scales[lm_bus_fields[field].unit];
+}
+
+/* True for a field that comes in sets with others, which only the codes of CANaerospace tell apart:
+ * a packed profile cannot have it. */
+static inline bool lm_bus_is_of_set(enum lm_bus_field field)
+{
+    return field >= LM_BUS_NAV_FIELDS && field < LM_BUS_SEA_STATE;
 }
 
 /* Convert `amount` from the field's unit on the bus to the unit kept, rounded to the nearest. An

@@ -12,7 +12,8 @@
 
 /* Bits of a frame's data, counted from the top of byte 0 if big-endian, else from its bottom. */
 struct lm_bus_bits {
-    uint8_t first, count; /* number of the first bit, and how many there are */
+    uint16_t first; /* number of the first bit */
+    uint8_t count;  /* how many there are */
 };
 
 enum lm_bus_packed_type { LM_BUS_UNSIGNED, LM_BUS_SIGNED, LM_BUS_FLOAT }; /* FLOAT: 32 or 64 bits */
@@ -54,6 +55,8 @@ enum lm_bus_framing {
     LM_BUS_PACKED        /* 29-bit identifiers, numbers of any bits: lm/bus_bitfield.h */
 };
 
+enum { LM_BUS_PROFILE_NAME_SIZE = 20 }; /* of a record (lm/bus_record.h), with its zero */
+
 struct lm_bus_profile {
     const char *name;
     const struct lm_bus_row *rows;
@@ -89,6 +92,25 @@ extern const struct lm_bus_named_profile lm_bus_profiles[];
 /* The profile of this name in the list; NULL iff none has exactly this name. */
 const struct lm_bus_profile *lm_bus_profile_named(const struct lm_bus_named_profile *list,
                                                   const char *name);
+
+/* Check a profile that was not written by us: all that the decoder, the ownship and the weather
+ * take for granted. `row` may be NULL; on failure it is the number of the first bad row, from 1, or
+ * 0 if the profile itself is bad.
+ *
+ * Returns LM_OK, or LM_ERR_TABLE iff
+ * - there are no rows, or more than LM_BUS_ROWS_MAX; the framing is unknown; a mask has bits
+ * outside an identifier, or the channel's more than 8;
+ * - a range is empty or beyond +-100,000; period, stale and dead do not rise in this order within
+ *   60 s (of latitude and longitude 4 s), or the period is below 1 ms;
+ * - CANaerospace: an identifier outside 200..1999 or given twice; types that lm_canas_fits refuses,
+ *   none, or, where types are assumed, two; per_unit outside 1..10^9;
+ * - packed: an identifier outside its mask, bits outside the frame or unfit for their type, a
+ * number of struct lm_bus_packing outside what its remarks say, more than LM_BUS_EVENTS rows for a
+ * frame, or a field that comes in sets (lm_bus_is_of_set);
+ * - two rows of one field have the same priority, or both take halves of a DOUBLE.
+ *
+ * Cost: grows with the square of the rows; done once, when a table is read. */
+int lm_bus_profile_check(const struct lm_bus_profile *profile, uint32_t *row);
 
 /* Outcome of a frame, or of a number in it. Each has a counter. */
 enum lm_bus_outcome {

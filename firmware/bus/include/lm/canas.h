@@ -59,7 +59,9 @@ enum {
     LM_CANAS_SERVICE_FIRST = 128, /* node service channels 0..35: request 128 + 2n, response + 1 */
     LM_CANAS_SERVICE_LAST = 199,
     LM_CANAS_LOW_SERVICE_FIRST = 2000, /* channels 100..115 */
-    LM_CANAS_LOW_SERVICE_LAST = 2031
+    LM_CANAS_LOW_SERVICE_LAST = 2031,
+    LM_CANAS_ROW_FIRST = 200, /* what a row may have */
+    LM_CANAS_ROW_LAST = 1999
 };
 
 /* Pair: a half of a DOUBLE that waits for the other, and the order in which its sender sends

@@ -158,8 +158,9 @@ struct lm_db {
     uint32_t signature_count, chip_count; /* 0 if the image has no section SIGNATURES */
     /* Places in the flash, in bytes: of the first directory entry, tile, target, ... */
     uint64_t directory_offset, records_offset, detail_offset, targets_offset;
-    uint64_t signatures_offset, chips_offset, radar_offset;
+    uint64_t signatures_offset, chips_offset, radar_offset, bus_offset;
     uint32_t radar_bytes; /* of the radar table's record; 0 if the image has no section RADAR */
+    uint32_t bus_bytes;   /* of the bus table's record; 0 if the image has no section BUS */
     uint8_t sensor;       /* enum lm_sensor: band of the reflectivity */
     int32_t mean_elevation_m_q6; /* of the land in the image; within 2^20 */
     int32_t geoid_m_q6; /* mean sea level above the ellipsoid, in the image's area; within 2^20 */
@@ -201,8 +202,8 @@ int lm_db_read(const struct lm_flash *flash, uint64_t offset, void *destination,
  * signatures. For start-up only, like lm_db_read.
  *
  * Returns LM_OK. Every offset and count in *db has then been checked against the size of the flash.
- * Tiles, targets, signatures and the radar table are checked when they are read. It fails, with *db
- * unspecified:
+ * Tiles, targets, signatures and the tables of radar and bus are checked when they are read. It
+ * fails, with *db unspecified:
  * - LM_ERR_IO: a read failed or took more than `poll_limit` polls.
  * - LM_ERR_CORRUPT: a checksum, a number out of its range, or a section that is missing or does not
  *   lie inside the image.

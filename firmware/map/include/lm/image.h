@@ -29,6 +29,7 @@ enum lm_image_section_type {
     LM_IMAGE_DETAIL,     /* vector detail of tiles */
     LM_IMAGE_RADAR,      /* radar table: lm/radar_record.h */
     LM_IMAGE_SEAL,       /* cryptographic signature */
+    LM_IMAGE_BUS,        /* bus table: lm/bus_record.h */
     LM_IMAGE_SECTION_TYPES
 };
 

@@ -50,7 +50,8 @@ struct lm_board {
         *radar; /* NULL: the image's table, or the built-in one where it has none */
     const struct lm_flash *flash;
     const struct lm_can *can;
-    const struct lm_bus_profile *bus_profile; /* NULL: lm_bus_canas17 */
+    const struct lm_bus_profile
+        *bus_profile;          /* NULL: the image's table, or lm_bus_canas17 where it has none */
     uint8_t bus_node;          /* the unit's CANaerospace node, 1..255; 0: no node services */
     bool is_heading_magnetic;  /* the bus's LM_BUS_HEADING is from magnetic north */
     bool tells_reports;        /* it also tells lm/canas_report.h; without a node it does not */

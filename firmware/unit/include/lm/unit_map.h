@@ -1,10 +1,12 @@
 /* Unit map: the opened flash image: its tables, the pool of tiles, and the targets with their
- * signatures and chips; and the radar that looks at it. */
+ * signatures and chips; the radar that looks at it; and the table of the bus, if the image has
+ * one. */
 #ifndef LM_UNIT_MAP_H
 #define LM_UNIT_MAP_H
 
 #include <stddef.h>
 
+#include "lm/bus_record.h"
 #include "lm/chips.h"
 #include "lm/radar.h"
 #include "lm/target.h"
@@ -18,9 +20,12 @@ enum lm_radar_origin { LM_RADAR_BUILT_IN, LM_RADAR_OF_IMAGE, LM_RADAR_OF_BOARD }
 struct lm_unit_map {
     const struct lm_radar *radar; /* the table in use, whatever the image is; never NULL */
     enum lm_radar_origin radar_origin;
-    struct lm_radar radar_of_image; /* storage */
+    struct lm_radar radar_of_image;   /* storage */
+    const struct lm_bus_profile *bus; /* the image's table; NULL: none, or the board has its own */
+    struct lm_bus_table bus_of_image; /* storage */
 
-    int open_status; /* enum lm_status: of lm_db_open, of lm_radar_unpack, or LM_ERR_SENSOR */
+    int open_status; /* enum lm_status: of lm_db_open, of lm_radar_unpack, of lm_bus_unpack, or
+                      * LM_ERR_SENSOR */
     bool is_usable;  /* false: the image cannot be used, and nothing below save db.sensor where the
                       * status is LM_ERR_SENSOR */
     struct lm_db db;
@@ -45,13 +50,15 @@ struct lm_unit_map_lent {
     uint32_t flash_poll_limit;    /* polls after which a read by lm_unit_map_open is given up */
     const struct lm_radar *radar; /* the board's table, which lm_radar_check has passed; NULL: the
                                    * image's, or the one that is built in where it has none */
+    bool has_bus_profile;         /* the board has its own: the image's is not read */
 };
 
 /* Open the image: choose the radar, read tables, coarsest LOD, targets and signatures. Waits for
  * the flash. Returns
  * - LM_OK, and m->is_usable: true if the image can be used. It cannot if lm_db_open fails, if its
- *   radar table is the one to use and fails lm_radar_unpack, or if its reflectivity is of another
- *   band than the radar in use (LM_ERR_SENSOR);
+ *   radar table is the one to use and fails lm_radar_unpack, if its bus table is the one to use and
+ *   fails lm_bus_unpack, or if its reflectivity is of another band than the radar in use
+ *   (LM_ERR_SENSOR);
  * - LM_ERR_NO_MEMORY: the pool is too small for the coarsest LOD and 16 tiles; *m must not be
  *   used. */
 int lm_unit_map_open(struct lm_unit_map *m, const struct lm_unit_map_lent *lent);

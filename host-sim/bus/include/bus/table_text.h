@@ -21,4 +21,7 @@ struct bus_table {
  * into itself: it must not be copied. */
 int bus_table_read(struct bus_table *table, FILE *in, const char *path);
 
+/* The same of a file. */
+int bus_table_load(struct bus_table *table, const char *path);
+
 #endif

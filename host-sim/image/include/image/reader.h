@@ -4,6 +4,7 @@
 
 #include "image/format.h"
 #include "image/unpacked.h"
+#include "lm/bus_profile.h"
 #include "lm/db.h"
 #include "lm/radar.h"
 #include "lm/signature.h"
@@ -32,9 +33,10 @@ struct image {
     struct lm_image_header header;
     struct lm_db db; /* as the firmware holds it, without a flash */
     const struct lm_image_section
-        *sections[LM_IMAGE_SECTION_TYPES]; /* in `header`; by type, [0] unused; NULL: not there */
-    bool has_radar;                        /* a section RADAR, whose table is sound */
-    struct lm_radar radar;                 /* that table */
+        *sections[LM_IMAGE_SECTION_TYPES];   /* in `header`; by type, [0] unused; NULL: not there */
+    bool has_radar;                          /* a section RADAR, whose table is sound */
+    struct lm_radar radar;                   /* that table */
+    char bus_name[LM_BUS_PROFILE_NAME_SIZE]; /* of the table in section BUS; empty: none, or bad */
     const struct lm_tile_entry *entries;
     struct image_unpacked *unpacked; /* owned; NULL for an image without compressed records */
     /* db.target_count, signature_count and chip_count of them, their contents not yet checked */

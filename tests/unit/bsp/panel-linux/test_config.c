@@ -80,6 +80,9 @@ TEST(every_profile_of_the_bus_is_a_choice)
         assert_int_equal(read_text(&c, text).count, 0);
         assert_ptr_equal(c.can_profile, p->profile);
     }
+    struct config c;
+    assert_int_equal(read_text(&c, "can.profile = auto\n").count, 0);
+    assert_null(c.can_profile);
 }
 
 TEST(numbers_are_held_to_their_range)

@@ -4,6 +4,8 @@
 #include "bus/print.h"
 #include "check.h"
 #include "lm/bus.h"
+#include "lm/bus_record.h"
+#include "lm/status.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -257,6 +259,63 @@ TEST(floats_that_are_no_numbers_are_refused)
         lm_bus_take(&bus, &frame, events);
         assert_int_equal(bus.count.outcome[tests[i].outcome], 1);
     }
+}
+
+/* The tables of the tree, read from their files, as records. */
+TEST(what_a_text_says_a_record_keeps)
+{
+    static const char *const files[] = {"host-sim/bus/arinc825.bus", "host-sim/bus/nmea2000.bus"};
+    for (size_t i = 0; i < sizeof files / sizeof *files; i++) {
+        uint8_t record[LM_BUS_RECORD_BYTES_MAX];
+        struct lm_bus_table kept;
+        assert_int_equal(bus_table_load(&table, files[i]), 0);
+        const uint32_t bytes = lm_bus_pack(&table.profile, record);
+        assert_int_equal(lm_bus_unpack(&kept, record, bytes), LM_OK);
+        assert_string_equal(kept.name, table.name);
+        for (int k = 0; k < table.profile.row_count; k++) {
+            struct lm_bus_row row = table.rows[k];
+            row.name = kept.rows[k].name;
+            assert_memory_equal(&row.packing.bias, &kept.rows[k].packing.bias, 8);
+            assert_true(row.packing.multiplier == kept.rows[k].packing.multiplier);
+            assert_true(row.id == kept.rows[k].id && row.field == kept.rows[k].field);
+        }
+    }
+}
+
+/* What the reader lets pass keeps what the firmware takes for granted: the same check judges both.
+ */
+TEST(what_the_reader_takes_the_firmware_takes)
+{
+    static const char *const texts[] = {
+        PACKED ALT "bits=0+64 type=float unit=m scale=0.3\n",
+        PACKED ALT "bits=0+32 type=float unit=ft offset=-4000\n",
+        PACKED ALT "bits=0+1 unit=m scale=9000\n",
+        PACKED ALT "bits=31+32 type=signed unit=m scale=1e-6 none=0xffffffff\n",
+        CANAS ALT "id=200 types=SHORT,FLOAT per-unit=1000000000\n",
+        CANAS ALT "id=1999 types=SHORT2\n"};
+    for (size_t i = 0; i < sizeof texts / sizeof *texts; i++) {
+        char errors[1024];
+        assert_int_equal(read_text(texts[i], errors, sizeof errors), 0);
+        assert_int_equal(lm_bus_profile_check(&table.profile, NULL), LM_OK);
+    }
+}
+
+TEST(a_file_that_is_not_there_is_named)
+{
+    fflush(stderr);
+    FILE *caught = tmpfile();
+    const int kept = dup(STDERR_FILENO);
+    dup2(fileno(caught), STDERR_FILENO);
+    const int status = bus_table_load(&table, "/nowhere/my.bus");
+    fflush(stderr);
+    dup2(kept, STDERR_FILENO);
+    close(kept);
+    char errors[400] = "";
+    rewind(caught);
+    errors[fread(errors, 1, sizeof errors - 1, caught)] = '\0';
+    fclose(caught);
+    assert_int_equal(status, -1);
+    assert_non_null(strstr(errors, "/nowhere/my.bus: cannot be opened: No such file"));
 }
 
 TEST(a_canaerospace_of_ones_own_is_read)

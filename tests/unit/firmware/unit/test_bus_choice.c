@@ -1,0 +1,121 @@
+/* Which table of the bus the unit hears, and what it does with a damaged one. */
+#include "check.h"
+#include "fx/crc32c.h"
+#include "lm/bit.h"
+#include "lm/bus_record.h"
+#include "lm/image.h"
+#include "unit_rig.h"
+
+#include <string.h>
+
+/* A bus that is none of those built in: true altitude at another identifier. */
+static const struct lm_bus_row rows[] = {{.name = "height",
+                                          .id = 700,
+                                          .field = LM_BUS_TRUE_ALTITUDE,
+                                          .stale_ms = 300,
+                                          .dead_ms = 2000,
+                                          .period_us = 100000,
+                                          .low = -1000,
+                                          .high = 30000,
+                                          .types = 1u << LM_CANAS_FLOAT,
+                                          .per_unit = 1}};
+static const struct lm_bus_profile ours = {.name = "ours", .rows = rows, .row_count = 1};
+
+/* A rig whose image carries that table, with one byte of it changed by `flip` and sealed again. */
+static struct rig *rig_with_table(uint32_t at, uint8_t flip, bool is_sealed)
+{
+    struct rig *r = make_rig();
+    uint8_t record[LM_BUS_RECORD_BYTES_MAX];
+    const uint32_t bytes = lm_bus_pack(&ours, record);
+    record[at] ^= flip;
+    if (is_sealed) {
+        const uint32_t crc = fx_crc32c(0, record + 4, bytes - 4);
+        memcpy(record, &crc, sizeof crc);
+    }
+    r->board.lent.bus_profile = NULL;
+    assert_int_equal(tiny_image_add_section(&r->image, LM_IMAGE_BUS, record, bytes), 0);
+    memory_flash_open(&r->board.flash, r->image.bytes, r->image.size);
+    return r;
+}
+
+static void start(struct rig *r)
+{
+    assert_int_equal(lm_unit_init(&r->unit, &r->board.lent), LM_OK);
+}
+
+TEST(an_image_without_a_table_is_flown_on_canaerospace)
+{
+    struct rig *r = make_rig();
+    r->board.lent.bus_profile = NULL;
+    start(r);
+    assert_ptr_equal(r->unit.bus.profile, &lm_bus_canas17);
+    assert_null(r->unit.map.bus);
+    free_rig(r);
+}
+
+TEST(the_image_s_table_is_heard)
+{
+    struct rig *r = rig_with_table(0, 0, true);
+    start(r);
+    assert_true(r->unit.map.is_usable);
+    assert_string_equal(r->unit.bus.profile->name, "ours");
+    const struct lm_can_frame frame = {
+        .id = 700, .length = 8, .data = {1, LM_CANAS_FLOAT, 0, 0, 0x44, 0x7a}}; /* 1000 m */
+    struct lm_bus_event events[LM_BUS_EVENTS];
+    assert_int_equal(lm_bus_take(&r->unit.bus, &frame, events), 1);
+    assert_int_equal(events[0].field, LM_BUS_TRUE_ALTITUDE);
+    assert_int_equal(events[0].value, 1000 * 64);
+    free_rig(r);
+}
+
+TEST(the_board_s_table_wins_over_the_image_s_even_where_that_is_damaged)
+{
+    struct rig *r = rig_with_table(50, 1, false);
+    r->board.lent.bus_profile = &lm_bus_xcsoar;
+    start(r);
+    assert_true(r->unit.map.is_usable);
+    assert_ptr_equal(r->unit.bus.profile, &lm_bus_xcsoar);
+    free_rig(r);
+}
+
+TEST(an_image_whose_table_is_damaged_is_refused)
+{
+    static const struct {
+        uint32_t at;
+        bool is_sealed;
+        int status;
+    } cases[] = {{50, false, LM_ERR_CORRUPT}, {4, true, LM_ERR_VERSION}, {40, true, LM_ERR_TABLE}};
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+        struct rig *r = rig_with_table(cases[i].at, 2, cases[i].is_sealed);
+        start(r);
+        assert_false(r->unit.map.is_usable);
+        assert_int_equal(r->unit.map.open_status, cases[i].status);
+        assert_ptr_equal(r->unit.bus.profile, &lm_bus_canas17);
+        run(r, 1);
+        assert_int_equal(r->unit.flags & LM_FLAG_DB, LM_FLAG_DB);
+        free_rig(r);
+    }
+}
+
+TEST(a_table_longer_than_any_is_refused)
+{
+    struct rig *r = make_rig();
+    static uint8_t record[LM_BUS_RECORD_BYTES_MAX + 1];
+    r->board.lent.bus_profile = NULL;
+    assert_int_equal(tiny_image_add_section(&r->image, LM_IMAGE_BUS, record, sizeof record), 0);
+    memory_flash_open(&r->board.flash, r->image.bytes, r->image.size);
+    start(r);
+    assert_int_equal(r->unit.map.open_status, LM_ERR_CORRUPT);
+    free_rig(r);
+}
+
+TEST(a_table_that_the_flash_does_not_give_is_not_heard)
+{
+    struct rig *r = rig_with_table(0, 0, true);
+    for (uint32_t every = 1; every < 8; every++) {
+        r->board.flash.fail_every = every;
+        start(r);
+        assert_true(r->unit.bus.profile == &lm_bus_canas17 || r->unit.map.is_usable);
+    }
+    free_rig(r);
+}
