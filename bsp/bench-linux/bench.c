@@ -79,6 +79,7 @@ int bench_open(struct bench *b, const struct bench_scene *scene, const struct be
                                  .bus_node = bus->node,
                                  .is_heading_magnetic = bus->is_heading_magnetic,
                                  .tells_reports = bus->tells_reports,
+                                 .obeys_controls = bus->obeys_controls,
                                  .hardware_revision = 1,
                                  .controls = controls,
                                  .display = &b->display,

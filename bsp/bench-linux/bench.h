@@ -27,6 +27,7 @@ struct bench_bus {
     uint8_t node;                         /* the unit's own CANaerospace node; 0: it only listens */
     bool is_heading_magnetic;             /* LM_BUS_HEADING is from magnetic north */
     bool tells_reports;                   /* it tells lm/canas_report.h as that node */
+    bool obeys_controls;                  /* of the bus: lm/canas_control.h */
 };
 
 /* What the unit looks at, and with. */

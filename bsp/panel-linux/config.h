@@ -42,8 +42,9 @@ struct config {
     const struct lm_bus_profile *can_profile; /* NULL: can_table, the database's, or canas17 */
     char can_table[CONFIG_PATH];
     uint32_t can_node;
-    uint32_t can_heading; /* 1: magnetic */
-    uint32_t can_reports; /* 1: on */
+    uint32_t can_heading;  /* 1: magnetic */
+    uint32_t can_reports;  /* 1: on */
+    uint32_t can_controls; /* 1: obey */
     uint32_t seed;
     uint32_t tiles;
 

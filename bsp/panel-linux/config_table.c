@@ -44,7 +44,11 @@ const struct config_row config_table[] = {
            "(1121) "
            "on the bus; without it the glass says MAG HDG."),
     OPTION(CONFIG_CHOICE, can_reports, 0, 0, "off on", "can.reports", "off | on", "off",
-           "Whether that node tells cursor, designated place, mode and state (docs/bus.md)."),
+           "Whether that node tells cursor, designated place, mode, state and controls "
+           "(docs/bus.md)."),
+    OPTION(CONFIG_CHOICE, can_controls, 0, 0, "off obey", "can.controls", "off | obey", "off",
+           "Whether keys, knobs and commands that come as frames of the bus are obeyed "
+           "(docs/bus.md)."),
     OPTION(CONFIG_NUMBER, seed, 0, 2147483647, NULL, "seed", "0..2147483647", "0",
            "Another number gives another speckle, and nothing else."),
     OPTION(CONFIG_NUMBER, tiles, 120, 512, NULL, "tiles", "120..512", "384",

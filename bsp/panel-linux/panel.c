@@ -142,6 +142,7 @@ static int start_unit(struct panel *p, const struct lm_flash *flash)
                                  .bus_node = (uint8_t)p->config->can_node,
                                  .is_heading_magnetic = p->config->can_heading != 0,
                                  .tells_reports = p->config->can_reports != 0,
+                                 .obeys_controls = p->config->can_controls != 0,
                                  .controls = &p->controls,
                                  .display = &p->glass.port,
                                  .tile_pool_bytes = p->config->tiles * sizeof(struct lm_tile),

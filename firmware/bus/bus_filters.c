@@ -1,5 +1,6 @@
 #include "lm/bus_filters.h"
 
+#include "lm/canas_control.h"
 #include "lm/canas_service.h"
 
 struct list {
@@ -46,6 +47,9 @@ uint32_t lm_bus_filters(const struct lm_bus_profile *profile,
     }
     if (is_canas) {
         add(&list, (struct lm_can_filter){LM_CANAS_REQUEST_ID, LM_CAN_ID_STANDARD, false});
+        for (uint32_t i = LM_CONTROL_ITEM_STEP + 1; i < LM_CONTROL_ITEMS; i++) {
+            add(&list, (struct lm_can_filter){LM_CONTROL_ID + i, LM_CAN_ID_STANDARD, false});
+        }
     }
     return list.count;
 }

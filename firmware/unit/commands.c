@@ -219,14 +219,24 @@ static enum lm_refusal apply_control(struct lm_unit *u, const struct lm_control 
     return LM_REFUSED_VALUE;
 }
 
-/* Apply a control, and tell its source if the unit refused it or the press that it is. */
-static void take_control(struct lm_unit *u, const struct lm_control *control, uint64_t now_us)
+/* Apply a control. True if the unit acted on it. */
+static bool take_control(struct lm_unit *u, const struct lm_control *control, uint64_t now_us)
 {
-    const struct lm_controls *source = u->board->controls;
-    const uint32_t refused = u->count.commands_refused;
     const enum lm_refusal reason = apply_control(u, control, now_us);
     if (reason != LM_REFUSED_NOT) {
         note_refusal(u, reason);
+    }
+    return reason == LM_REFUSED_NOT;
+}
+
+/* A control of the board is told on the bus, and its source learns if the unit refused it or the
+ * press that it is. */
+static void take_board_control(struct lm_unit *u, const struct lm_control *control, uint64_t now_us)
+{
+    const struct lm_controls *source = u->board->controls;
+    const uint32_t refused = u->count.commands_refused;
+    if (take_control(u, control, now_us)) {
+        lm_canas_control_tell(&u->control_bus, control, now_us);
     }
     if (u->count.commands_refused != refused && source->refused) {
         source->refused(source->ctx, u->refusal);
@@ -241,7 +251,11 @@ void lm_take_controls(struct lm_unit *u, uint64_t now_us)
     }
     const struct lm_controls *controls = u->board->controls;
     struct lm_control control;
-    for (uint32_t i = 0; i < CONTROLS_A_STEP && controls->next(controls->ctx, &control) == 1; i++) {
+    for (uint32_t i = 0; i < CONTROLS_A_STEP && lm_canas_control_next(&u->control_bus, &control);
+         i++) {
         take_control(u, &control, now_us);
+    }
+    for (uint32_t i = 0; i < CONTROLS_A_STEP && controls->next(controls->ctx, &control) == 1; i++) {
+        take_board_control(u, &control, now_us);
     }
 }

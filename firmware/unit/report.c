@@ -19,13 +19,6 @@ static void tell(struct lm_report *r, enum lm_report_item item, uint32_t word)
     r->known |= (uint32_t)1 << item;
 }
 
-/* 1e-7 degree in a signed angle. 2^31 * 3.6e9 is below 2^63. */
-static uint32_t ten_millionths_of_bam(fx_bam_t angle)
-{
-    const int64_t product = (int64_t)(int32_t)angle * 3600000000LL;
-    return (uint32_t)(int32_t)((product + (1LL << 31)) >> 32);
-}
-
 /* |height| < 2^31 m * 1024, times 125 below 2^38. */
 static uint32_t mm_of_m_q10(int32_t height_m_q10)
 {
@@ -35,8 +28,8 @@ static uint32_t mm_of_m_q10(int32_t height_m_q10)
 static void tell_position(struct lm_report *r, enum lm_report_item latitude,
                           struct lm_position position)
 {
-    tell(r, latitude, ten_millionths_of_bam(position.latitude));
-    tell(r, latitude + 1, ten_millionths_of_bam(position.longitude));
+    tell(r, latitude, lm_ten_millionths_of_bam(position.latitude));
+    tell(r, latitude + 1, lm_ten_millionths_of_bam(position.longitude));
 }
 
 /* Slant range by the law of the radar's pictures. */
@@ -54,7 +47,7 @@ static void tell_cursor(const struct lm_unit *u, struct lm_report *r)
         return;
     }
     tell_position(r, LM_REPORT_CURSOR_LATITUDE, c->position);
-    tell(r, LM_REPORT_CURSOR_BEARING, ten_millionths_of_bam(c->bearing));
+    tell(r, LM_REPORT_CURSOR_BEARING, lm_ten_millionths_of_bam(c->bearing));
     const bool is_near = c->range_m <= RANGE_MOST_M;
     if (is_near) {
         tell(r, LM_REPORT_CURSOR_RANGE, lm_mm_of_m(c->range_m));
@@ -148,5 +141,6 @@ void lm_send_reports(struct lm_unit *u, uint64_t now_us)
         }
         lm_canas_report_begin(&u->report, sets, &values, now_us);
     }
+    lm_canas_control_send(&u->control_bus, u->board->can); /* what happened, before what is */
     lm_canas_report_send(&u->report, u->board->can);
 }

@@ -57,6 +57,8 @@ int lm_unit_init(struct lm_unit *u, const struct lm_board *board)
     const uint8_t node = bus->framing == LM_BUS_CANAEROSPACE ? board->bus_node : 0;
     lm_canas_service_init(&u->service, node, board->hardware_revision, LM_VERSION_NUMBER);
     lm_canas_report_init(&u->report, board->tells_reports ? node : 0);
+    lm_canas_control_init(&u->control_bus, board->tells_reports ? node : 0,
+                          board->obeys_controls && bus->framing == LM_BUS_CANAEROSPACE);
     lm_unit_weather_init(&u->weather);
     lm_page_init(&u->page, u->map.radar);
     u->ground_m_q10 = LM_NO_ELEVATION;
@@ -74,6 +76,7 @@ static void take_frame(struct lm_unit *u, const struct lm_can_frame *frame)
         lm_weather_bus_take(&u->weather.bus, &events[i]);
     }
     lm_canas_service_take(&u->service, frame);
+    lm_canas_control_take(&u->control_bus, frame);
 }
 
 static void take_bus(struct lm_unit *u, uint64_t now_us)

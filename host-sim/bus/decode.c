@@ -1,11 +1,12 @@
 #include "bus/decode.h"
 
+#include "bus/control_rows.h"
 #include "drv/can_log.h"
 #include "hs/error.h"
 #include "hs/progress.h"
 #include "hs/report.h"
 #include "lm/bus.h"
-#include "lm/canas_report.h"
+#include "lm/canas_control.h"
 
 #include <errno.h>
 #include <math.h>
@@ -133,15 +134,21 @@ static void print_event(FILE *out, const struct lm_bus_profile *profile,
     }
 }
 
-/* The display's own frame of this identifier, or NULL. */
-static const struct lm_report_row *report_of(const struct lm_can_frame *f)
+/* The display's own frame of this identifier, or a control: true with its row. */
+static bool find_report(const struct lm_can_frame *f, struct lm_report_row *row)
 {
-    for (int i = 0; i < LM_REPORT_ITEMS; i++) {
-        if (lm_report_rows[i].id == f->id && !f->is_extended) {
-            return &lm_report_rows[i];
+    for (int i = 0; i < LM_REPORT_ITEMS && !f->is_extended; i++) {
+        if (lm_report_rows[i].id == f->id) {
+            *row = lm_report_rows[i];
+            return true;
         }
     }
-    return NULL;
+    const bool is_control =
+        !f->is_extended && f->id >= LM_CONTROL_ID && f->id < LM_CONTROL_ID + LM_CONTROL_ITEMS;
+    if (is_control) {
+        *row = bus_control_row((int)(f->id - LM_CONTROL_ID));
+    }
+    return is_control;
 }
 
 /* What a frame of the display says, when it is well formed and has a value. */
@@ -162,8 +169,9 @@ static void print_report(FILE *out, const struct lm_report_row *row, const struc
     if (t->elements == 1) {
         const uint32_t word = element_at(f->data + 4, 0, t->element_bytes);
         const int32_t number = t->element_bytes == 1 ? (int8_t)word : (int32_t)word;
-        fprintf(out, " = %.*f %s", row->per_unit > 1000 ? 7 : 3, (double)number / row->per_unit,
-                row->unit);
+        const bool is_unsigned = t->kind == LM_CANAS_KIND_UNSIGNED;
+        fprintf(out, " = %.*f %s", row->per_unit > 1000 ? 7 : 3,
+                (is_unsigned ? word : (double)number) / row->per_unit, row->unit);
     }
 }
 
@@ -200,9 +208,10 @@ static void print_frame(struct decoder *d, const struct lm_can_frame *f)
     fprintf(d->out, f->is_extended || f->is_error ? "%08X" : "     %03X", f->id);
     const char *name = name_of(profile, f);
     const bool is_canas = profile->framing == LM_BUS_CANAEROSPACE && !f->is_error && !f->is_remote;
-    const struct lm_report_row *report = is_canas && name == NULL ? report_of(f) : NULL;
-    if (report != NULL) {
-        name = report->name;
+    struct lm_report_row report;
+    const bool is_report = is_canas && name == NULL && find_report(f, &report);
+    if (is_report) {
+        name = report.name;
     }
     if (name != NULL) {
         fprintf(d->out, " %s:", name);
@@ -213,10 +222,10 @@ static void print_frame(struct decoder *d, const struct lm_can_frame *f)
     for (uint32_t i = 0; i < count; i++) {
         print_event(d->out, profile, &events[i]);
     }
-    if (report != NULL) {
-        print_report(d->out, report, f);
+    if (is_report) {
+        print_report(d->out, &report, f);
     }
-    if (count == 0 && report == NULL) {
+    if (count == 0 && !is_report) {
         fprintf(d->out, " [%s]", f->is_error ? "report of the controller" : news(&before, &d->bus));
     }
     if (is_canas && f->length >= 4 &&

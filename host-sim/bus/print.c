@@ -1,9 +1,11 @@
 #include "bus/print.h"
 
+#include "bus/control_rows.h"
 #include "drv/can_socket.h"
 #include "hs/report.h"
 #include "lm/bus_filters.h"
 #include "lm/canas.h"
+#include "lm/canas_control.h"
 #include "lm/canas_report.h"
 
 #include <math.h>
@@ -142,6 +144,19 @@ void bus_print_reports(FILE *out)
     }
 }
 
+void bus_print_controls(FILE *out)
+{
+    fprintf(out,
+            "| id | hex | item | type | unit or bytes | counts in a unit |\n"
+            "|---|---|---|---|---|---|\n");
+    hs_report_put("controls", (int)LM_CONTROL_ITEMS);
+    for (int i = 0; i < LM_CONTROL_ITEMS; i++) {
+        const struct lm_report_row row = bus_control_row(i);
+        fprintf(out, "| %u | %03X | %s | %s | %s | %d |\n", row.id, row.id, row.name,
+                lm_canas_types[row.type].name, row.unit, row.per_unit);
+    }
+}
+
 /* ---- .dbc ---- */
 
 enum { DBC_NAME_BYTES = 32 }; /* what other tools allow, and a NUL less */
@@ -260,14 +275,15 @@ static void print_canas_message(FILE *out, const struct lm_bus_profile *profile,
 
 /* A number, or bytes that have names. All but the header is there only if the type is not NODATA.
  */
-static void print_report_message(FILE *out, const struct lm_report_row *row, int index)
+static void print_report_message(FILE *out, const struct lm_report_row *row, int index,
+                                 const char *sender)
 {
     const struct lm_canas_type *t = &lm_canas_types[row->type];
     char multiplex[8], name[DBC_NAME_BYTES];
     snprintf(multiplex, sizeof multiplex, "m%u ", row->type);
     fprintf(out, "\nBO_ %u display_", row->id);
     print_name(out, row->name, index);
-    fprintf(out, ": 8 landmass\n");
+    fprintf(out, ": 8 %s\n", sender);
     print_header_signals(out, true);
     const char *word = row->unit;
     for (unsigned i = 0; i < t->elements; i++) {
@@ -292,7 +308,11 @@ static void print_service_messages(FILE *out)
     print_header_signals(out, false);
     fprintf(out, " SG_ flags : 39|32@0+ (1,0) [0|4294967295] \"\" Vector__XXX\n");
     for (int i = 0; i < LM_REPORT_ITEMS; i++) {
-        print_report_message(out, &lm_report_rows[i], i);
+        print_report_message(out, &lm_report_rows[i], i, "landmass");
+    }
+    for (int i = 0; i < LM_CONTROL_ITEMS; i++) {
+        const struct lm_report_row row = bus_control_row(i);
+        print_report_message(out, &row, i, i == LM_CONTROL_ITEM_STEP ? "landmass" : "Vector__XXX");
     }
 }
 

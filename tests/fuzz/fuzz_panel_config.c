@@ -34,7 +34,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
     FUZZ_ASSERT(is_text(c.can, 16) && is_text(c.glass_connector, 32));
     FUZZ_ASSERT(c.tiles >= 120 && c.tiles <= 512 && c.seed <= 2147483647);
     FUZZ_ASSERT(c.glass <= CONFIG_GLASS_NONE && c.glass_turn <= DRV_TURN_270);
-    FUZZ_ASSERT(c.can_reports <= 1 && c.can_heading <= 1);
+    FUZZ_ASSERT(c.can_reports <= 1 && c.can_controls <= 1 && c.can_heading <= 1);
     FUZZ_ASSERT(c.glass_format <= DRV_RGB565 && c.glass_sector <= 1 && c.glass_heading <= 1);
     FUZZ_ASSERT(c.glass_strobe <= 1 && c.glass_borders <= 1 && c.key_active_low <= 1 &&
                 c.led_active_low <= 1);

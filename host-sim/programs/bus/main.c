@@ -28,6 +28,8 @@ static int print_for(FILE *out, const struct command *c)
         bus_print_filters(out, c->profile);
     } else if (strcmp(c->name, "reports") == 0) {
         bus_print_reports(out);
+    } else if (strcmp(c->name, "controls") == 0) {
+        bus_print_controls(out);
     } else if (strcmp(c->name, "fields") == 0) {
         bus_print_fields(out);
     } else if (c->log_path == NULL || strcmp(c->log_path, "-") == 0) {
@@ -134,6 +136,8 @@ static const struct hs_usage usages[] = {
      "  landmass-bus decode --table my.bus flight.log"},
     {"reports", "what the display tells the other avionics, as a table of Markdown",
      "The same whatever the profile: reports are frames of CANaerospace."},
+    {"controls", "what the operator does, told and obeyed, as a table of Markdown",
+     "The same whatever the profile: control frames are frames of CANaerospace."},
     {"fields", "the fields that a table of your own may name, and their units",
      "docs/bus.md explains the table."},
 };

@@ -250,6 +250,15 @@ static void report_bus(const struct sim *s)
         hs_report_put(outcomes[i].key, u->bus.count.outcome[outcomes[i].outcome]);
     }
     hs_report_close();
+    const struct lm_canas_control *c = &u->control_bus;
+    hs_report_object("controls");
+    hs_report_put("told", c->count.told);
+    hs_report_put("lost", c->count.lost);
+    hs_report_put("obeyed", c->count.heard);
+    hs_report_put("refused_frames", c->count.refused);
+    hs_report_put("torn", c->count.torn);
+    hs_report_put("bad", c->count.bad);
+    hs_report_close();
     const struct lm_weather_bus *w = &u->weather.bus;
     hs_report_object("weather");
     hs_report_put("sets", w->count.sets);
@@ -340,6 +349,12 @@ static void print_summary(const struct sim *s)
         printf("     told: %u frames; %u sets cut short, %u frames lost\n", r->count.sent,
                r->count.cut, r->count.lost);
     }
+    const struct lm_canas_control *c = &u->control_bus;
+    if (c->count.told + c->count.lost + c->count.heard + c->count.refused + c->count.bad != 0) {
+        printf("     controls: %u told, %u lost, %u obeyed; %u frames refused, %u torn, %u bad\n",
+               c->count.told, c->count.lost, c->count.heard, c->count.refused, c->count.torn,
+               c->count.bad);
+    }
     const struct lm_weather_bus *w = &u->weather.bus;
     if (w->count.sets + w->count.torn + w->count.refused + w->count.numbers != 0) {
         printf(
@@ -416,7 +431,8 @@ static int run(struct sim *s)
     }
     hands_init(&s->hands, &s->script.port);
     const struct lm_bus_profile *const profile = o->table ? &s->table.profile : o->profile;
-    const struct bench_bus bus = {&s->can, profile, o->node, o->heading == 1, o->tells_reports};
+    const struct bench_bus bus = {&s->can,         profile,          o->node,
+                                  o->heading == 1, o->tells_reports, o->obeys_controls};
     const struct bench_glass glass = {o->width_px, o->height_px, o->glass};
     const struct bench_scene scene = {o->database, o->radar ? &s->radar : NULL};
     if (bench_open(&s->bench, &scene, &glass, o->seed, &bus, &s->hands.port) != 0) {

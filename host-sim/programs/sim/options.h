@@ -18,6 +18,7 @@ struct options {
     bool has_window, has_bezel, is_quiet;
     int heading;                          /* of the bus: 0 true, 1 magnetic */
     bool tells_reports;                   /* on the bus, as its node */
+    bool obeys_controls;                  /* of the bus */
     const struct lm_bus_profile *profile; /* of the bus; NULL: the database's, or canas17 */
     const char *table;                    /* of the bus, a text; NULL: none */
     uint8_t node;                         /* on the bus; 0: it only listens */

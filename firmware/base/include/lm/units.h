@@ -248,6 +248,21 @@ static inline int32_t lm_deg_tenths_of_bam(int32_t angle)
     return (int32_t)(((int64_t)angle * 3600 + (1LL << 31)) >> 32);
 }
 
+/* 1e-7 degree in a signed angle, as a word of two's complement; nearest. 2^31 * 3.6e9 is below
+ * 2^63. */
+static inline uint32_t lm_ten_millionths_of_bam(fx_bam_t angle)
+{
+    const int64_t product = (int64_t)(int32_t)angle * 3600000000LL;
+    return (uint32_t)(int32_t)((product + (1LL << 31)) >> 32);
+}
+
+/* The other way; nearest, any word. 3.6e9 is 2^10 * 3515625, and 2^31 * 2^22 is 2^53. */
+static inline fx_bam_t lm_bam_of_ten_millionths(uint32_t word)
+{
+    const int64_t product = (int64_t)(int32_t)word * (1LL << 22);
+    return (fx_bam_t)((product + (product < 0 ? -1757812 : 1757812)) / 3515625);
+}
+
 /* Exact, for any time. */
 static inline uint64_t lm_us_of_ms(uint32_t time_ms)
 {

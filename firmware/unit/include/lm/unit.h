@@ -30,6 +30,7 @@
 #include <stddef.h>
 
 #include "lm/bus.h"
+#include "lm/canas_control.h"
 #include "lm/canas_report.h"
 #include "lm/canas_service.h"
 #include "lm/composer.h"
@@ -54,7 +55,9 @@ struct lm_board {
         *bus_profile;          /* NULL: the image's table, or lm_bus_canas17 where it has none */
     uint8_t bus_node;          /* the unit's CANaerospace node, 1..255; 0: no node services */
     bool is_heading_magnetic;  /* the bus's LM_BUS_HEADING is from magnetic north */
-    bool tells_reports;        /* it also tells lm/canas_report.h; without a node it does not */
+    bool tells_reports;        /* it also tells lm/canas_report.h and lm/canas_control.h; without
+                                  a node it does not */
+    bool obeys_controls;       /* of the bus: lm/canas_control.h */
     uint8_t hardware_revision; /* told on the bus on request */
     const struct lm_controls *controls;
     const struct lm_display *display;
@@ -91,6 +94,7 @@ struct lm_unit {
     struct lm_nav nav;
     struct lm_canas_service service;
     struct lm_canas_report report;
+    struct lm_canas_control control_bus;
     uint64_t last_bus_us; /* arrival of the last frame that was no error report */
     struct {
         uint32_t jumps; /* nav.position_jumps as of the last step */
@@ -155,12 +159,13 @@ int lm_unit_init(struct lm_unit *u, const struct lm_board *board);
 /* Do what is due at `now_us`: microseconds since the start, never less than in the call before. In
  * this order:
  * - take at most LM_STEP_FRAMES frames from the bus, and extrapolate the ownship to now;
- * - take at most 8 controls;
+ * - take at most 8 controls of the bus, and 8 of the board;
  * - update the flags, and remove the picture if navigation or the image is lost;
  * - move view and cursor, and the range scale if it follows the cursor;
  * - start and finish reads of tiles, without waiting;
  * - draw at most LM_STEP_LINES lines;
- * - tell the other avionics what is due, at most LM_REPORT_FRAMES_A_STEP frames;
+ * - tell the other avionics what is due, at most LM_CONTROL_FRAMES_A_STEP and
+ *   LM_REPORT_FRAMES_A_STEP frames;
  * - compose the glass, at most board->glass_step_px pixels, and show it when it is complete, every
  *   LM_FRAME_US.
  * Call at least every 4 ms for a smooth sweep. Never waits and never fails: errors show in u->flags

@@ -23,6 +23,9 @@ void bus_print_c(FILE *out, const struct lm_bus_profile *profile);
 /* What the display tells unasked (lm/canas_report.h), as a table of Markdown. */
 void bus_print_reports(FILE *out);
 
+/* What the operator does, told and obeyed (lm/canas_control.h), as a table of Markdown. */
+void bus_print_controls(FILE *out);
+
 /* The names that a text table may say for a field, and their units. */
 void bus_print_fields(FILE *out);
 

@@ -337,13 +337,16 @@ def the_document_has_the_tables_that_the_firmware_has():
     for profile in PROFILES[:2]:
         assert bus("table", *profile) in document, "docs/bus.md: put the output of landmass-bus table %s there" % " ".join(profile)
     assert bus("reports") in document, "docs/bus.md: put the output of landmass-bus reports there"
+    assert bus("controls") in document, "docs/bus.md: put the output of landmass-bus controls there"
 
 
 def reports_are_decoded_to_what_the_dbc_says():
     messages = read_dbc(bus("dbc"))
-    rows = [[cell.strip() for cell in line.strip("|").split("|")] for line in bus("reports").splitlines()]
-    rows = [dict(zip(rows[0], row)) for row in rows[2:]]
-    types = {"LONG": (3, ">i"), "CHAR": (9, ">b"), "UCHAR2": (19, ">2B"), "UCHAR3": (27, ">3B"), "UCHAR4": (16, ">4B")}
+    rows = []
+    for table in bus("reports"), bus("controls"):
+        cells = [[cell.strip() for cell in line.strip("|").split("|")] for line in table.splitlines()]
+        rows += [dict(zip(cells[0], row)) for row in cells[2:]]
+    types = {"LONG": (3, ">i"), "ULONG": (4, ">I"), "CHAR": (9, ">b"), "UCHAR": (10, ">B"), "UCHAR2": (19, ">2B"), "UCHAR3": (27, ">3B"), "UCHAR4": (16, ">4B")}
     dice = random.Random(1510)
     for row in rows:
         kind, form = types[row["type"]]

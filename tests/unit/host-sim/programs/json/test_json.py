@@ -495,6 +495,11 @@ def bus_reports():
     assert document["report"]["reports"] == len(re.findall(r"^\| \d", text, re.M)) > 0
 
 
+def bus_controls():
+    document, text = run("bus", "controls")
+    assert document["report"]["controls"] == len(re.findall(r"^\| \d", text, re.M)) > 0
+
+
 def sim():
     with open(here("script"), "w") as file:
         file.write("0 range 10\n3 picture one\n")
@@ -769,7 +774,8 @@ CHECKS = {"db import": db_import, "db train": db_train, "db segment": db_segment
           "db vectors": db_vectors, "db reflect": db_reflect, "db infrared": db_infrared,
           "db build": db_build, "db inspect": db_inspect, "db convert": db_convert, "db verify": db_verify, "db qgis": db_qgis, "db export": db_export,
           "db picture": db_picture, "scene": scene, "nav": nav, "bus decode": bus_decode, "bus fields": bus_fields,
-          "bus table": bus_table, "bus dbc": bus_dbc, "bus filters": bus_filters, "bus reports": bus_reports, "sim": sim,
+          "bus table": bus_table, "bus dbc": bus_dbc, "bus filters": bus_filters, "bus reports": bus_reports,
+          "bus controls": bus_controls, "sim": sim,
           "radar print": radar_print, "radar check": radar_check, "radar record": radar_record,
           "reference sar": reference("sar"), "reference gm": reference("gm"), "reference sector": reference("sector"),
           "figures figure1": figures("figure1"), "figures table1": figures("table1"), "tables fixed": tables("fixed"),
