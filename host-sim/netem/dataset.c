@@ -85,16 +85,27 @@ static struct nm_origin origin_of(const struct nm_chip *chip, const struct nm_ch
     return o;
 }
 
+int nm_sample_draw(struct nm_sample *sample, const struct setup *setup,
+                   const struct reflect_law *law)
+{
+    const size_t cells = (size_t)setup->cells * (size_t)setup->cells;
+    sample->own = malloc(cells * sizeof *sample->own);
+    sample->own_amplitudes =
+        malloc(cells / (NM_CELLS_PER_PIXEL * NM_CELLS_PER_PIXEL) * sizeof *sample->own_amplitudes);
+    if (!sample->own || !sample->own_amplitudes) {
+        return hs_error("chips", "take fewer of them", "out of memory");
+    }
+    return nm_draw_by_law(&sample->paths, law, sample->own) == 0
+               ? nm_law_amplitudes(setup, sample->own, sample->own_amplitudes)
+               : -1;
+}
+
 static int trace_sample(struct nm_sample *sample, const struct nm_target_view *view,
                         double azimuth_deg, double depression_deg, struct reflect_law *law)
 {
-    if (nm_target_view_paths(view, azimuth_deg, depression_deg, &sample->paths, law) != 0) {
-        return -1;
-    }
-    const size_t cells = (size_t)sample->paths.cells_across * (size_t)sample->paths.cells_range;
-    sample->own = malloc(cells * sizeof *sample->own);
-    return sample->own ? nm_draw_by_law(&sample->paths, law, sample->own)
-                       : hs_error("chips", "take fewer of them", "out of memory");
+    return nm_target_view_paths(view, azimuth_deg, depression_deg, &sample->paths, law) == 0
+               ? nm_sample_draw(sample, &view->setup, law)
+               : -1;
 }
 
 static int load_sample(struct nm_sample *sample, struct nm_chip_entry *entry,

@@ -4,6 +4,7 @@
 #include "hs/progress.h"
 #include "hs/report.h"
 #include "netem/experiment.h"
+#include "netem/null_model.h"
 #include "netem/report.h"
 
 #include <math.h>
@@ -26,14 +27,13 @@ static double *square_of(const struct shown *s, int chip, int kind)
     return s->pixels + (size_t)(chip * KINDS + kind) * (size_t)(s->side * s->side);
 }
 
-/* The simulator's own picture, its kernel times `gain`, in t->simulator.pixels. */
+/* The simulator's own picture, its amplitudes times `gain`, in t->simulator.pixels. */
 static void draw_own(struct nm_training *t, const struct nm_sample *sample, double gain)
 {
-    double kernel[NM_LARGE * NM_LARGE];
-    for (int i = 0; i < NM_LARGE * NM_LARGE; i++) {
-        kernel[i] = gain * t->model.kernel[i];
+    const int side = t->simulator.side_px;
+    for (int i = 0; i < side * side; i++) {
+        t->simulator.pixels[i] = tanh(gain * sample->own_amplitudes[i]);
     }
-    nm_netpix_fixed(&t->simulator.pix, kernel, sample->own, t->simulator.pixels);
 }
 
 static struct nm_origin place(struct nm_training *t, const struct nm_sample *sample)
@@ -49,24 +49,52 @@ static const struct nm_sample *fitted(const struct nm_samples *samples, int i, i
     return &samples->items[(long)i * samples->count / count];
 }
 
-/* The gain, from a thousandth of the kernel's to a hundredfold, of the least mean square error. */
-static double fit_square(struct nm_training *t, const struct nm_samples *samples)
+static double square_error(struct nm_training *t, const struct nm_samples *samples, double gain)
 {
-    double best_gain = 1, least = INFINITY;
     const int count = samples->count < FITTED_MAX ? samples->count : FITTED_MAX;
-    for (int g = 0; g < SQUARE_GAINS && count > 0; g++) {
-        const double gain = pow(10, -3 + 5.0 * g / (SQUARE_GAINS - 1));
-        double sum = 0;
-        for (int i = 0; i < count; i++) {
-            const struct nm_sample *s = fitted(samples, i, count);
-            draw_own(t, s, gain);
-            sum += nm_loss(NM_MSE, t->simulator.pixels, t->simulator.side_px, &s->real, place(t, s),
-                           NULL);
-        }
+    double sum = 0;
+    for (int i = 0; i < count; i++) {
+        const struct nm_sample *s = fitted(samples, i, count);
+        draw_own(t, s, gain);
+        sum +=
+            nm_loss(NM_MSE, t->simulator.pixels, t->simulator.side_px, &s->real, place(t, s), NULL);
+    }
+    return sum;
+}
+
+/* The gain of the least square error among SQUARE_GAINS from `middle` / `span` to `middle` *
+ * `span`.
+ */
+static double fit_square_near(struct nm_training *t, const struct nm_samples *samples,
+                              double middle, double span)
+{
+    double best_gain = middle, least = INFINITY;
+    for (int g = 0; g < SQUARE_GAINS; g++) {
+        const double gain = middle * pow(span, -1 + 2.0 * g / (SQUARE_GAINS - 1));
+        const double sum = square_error(t, samples, gain);
         best_gain = sum < least ? gain : best_gain;
         least = fmin(sum, least);
     }
     return best_gain;
+}
+
+/* Amplitudes may have any unit: from a thousandth to a thousandfold of what makes the own law's
+ * mean that of the real chips; then finer. */
+static double fit_square(struct nm_training *t, const struct nm_samples *samples)
+{
+    const int side = t->simulator.side_px;
+    double own = 0, real = 0;
+    for (int i = 0; i < samples->count; i++) {
+        const struct nm_sample *s = &samples->items[i];
+        for (int k = 0; k < side * side; k++) {
+            own += s->own_amplitudes[k] / (side * side);
+        }
+        for (int k = 0; k < s->real.width * s->real.height; k++) {
+            real += s->real.pixels[k] / (s->real.width * s->real.height);
+        }
+    }
+    const double coarse = fit_square_near(t, samples, own > 0 ? real / own : 1, 1000);
+    return fit_square_near(t, samples, coarse, pow(1000, 2.0 / (SQUARE_GAINS - 1)));
 }
 
 static void keep(const struct nm_training *t, const struct nm_sample *sample, struct nm_origin at,
@@ -108,19 +136,11 @@ static int show_all(struct nm_training *t, const struct nm_samples *samples, int
     return result;
 }
 
-/* All amplitudes of a square times `gain`. */
-static void brighten(const double *pixels, int count, double gain, double *brighter)
-{
-    for (int i = 0; i < count; i++) {
-        brighter[i] = tanh(gain * atanh(fmin(pixels[i], 1 - 1e-12)));
-    }
-}
-
 /* CW-SSIM of chip i at a gain; `scratch` is a square. NaN out of memory. */
 static double cw_ssim_at(const struct shown *s, int i, int kind, double gain, double *scratch)
 {
     double score;
-    brighten(square_of(s, i, kind), s->side * s->side, gain, scratch);
+    nm_brighten(square_of(s, i, kind), s->side * s->side, gain, scratch);
     return nm_score_cw_ssim(scratch, square_of(s, i, kind - 1), s->side, &score) == 0 ? score : NAN;
 }
 
@@ -287,6 +307,11 @@ int nm_experiment_score(struct nm_experiment *e, const struct nm_samples *sample
     }
     result = result == 0 ? fit_gains(e, scratch, summary) : -1;
     if (result == 0) {
+        const struct nm_samples training = nm_dataset_training(&e->dataset);
+        result =
+            nm_null_scores(e->training, &training, samples, summary->nulls, &summary->near_deg);
+    }
+    if (result == 0) {
         result = show_all(e->training, samples, samples->count, summary->own_gain, &s);
     }
     if (result == 0) {
@@ -319,7 +344,29 @@ static void report_summary(const struct nm_summary *s, const char *what)
     report_score("learned", &s->learned, s->learned_best_gain, s->learned_best);
     report_score("own_law", &s->own, s->own_best_gain, s->own_best);
     hs_report_put("own_law_gain", s->own_gain);
+    for (int n = 0; n < NM_NULLS; n++) {
+        hs_report_object(nm_null_names[n]);
+        hs_report_put("mse", s->nulls[n].mse);
+        hs_report_put("ssim", s->nulls[n].ssim);
+        hs_report_put("cw_ssim", s->nulls[n].cw_ssim);
+        hs_report_close();
+    }
+    hs_report_put("nearest_chip_deg", s->near_deg);
     hs_report_close();
+}
+
+/* What needs no simulator: a score that is no better says nothing. */
+static void print_nulls(const struct nm_summary *s)
+{
+    static const char *const titles[NM_NULLS] = {"flat picture", "mean chip", "nearest chip"};
+    for (int n = 0; n < NM_NULLS; n++) {
+        printf("  null model, %-12s   mse %.6f   ssim %.4f   cw-ssim %.4f\n", titles[n],
+               s->nulls[n].mse, s->nulls[n].ssim, s->nulls[n].cw_ssim);
+    }
+    printf(
+        "  of training chips: their mean everywhere, their mean picture, and the real one of "
+        "the\n  nearest other azimuth, %.1f degrees away\n",
+        s->near_deg);
 }
 
 void nm_summary_print(const struct nm_summary *s, const char *what)
@@ -331,6 +378,6 @@ void nm_summary_print(const struct nm_summary *s, const char *what)
            s->learned_best);
     printf("  own law   mse %.6f   ssim %.4f   cw-ssim %.4f, at its best gain (%.2f) %.4f\n",
            s->own.mse, s->own.ssim, s->own.cw_ssim, s->own_best_gain, s->own_best);
-    printf("  the own law's gain of least squares on the training chips is %.3g of the kernel's\n",
-           s->own_gain);
+    printf("  the own law's gain of least squares on the training chips is %.3g\n", s->own_gain);
+    print_nulls(s);
 }

@@ -72,6 +72,28 @@ int nm_draw_by_law(const struct nm_paths *paths, const struct reflect_law *law, 
     return is_whole ? 0 : hs_error("picture", NULL, "out of memory");
 }
 
+int nm_law_amplitudes(const struct setup *setup, const double *picture, double *amplitudes)
+{
+    const int cells = (int)setup->cells, side = cells / NM_CELLS_PER_PIXEL;
+    const int aperture = pix_aperture(setup->resolution_m, setup->cell_m);
+    float *power = malloc((size_t)cells * (size_t)cells * sizeof *power);
+    if (!power) {
+        return hs_error("picture", "give fewer --cells", "out of memory");
+    }
+    for (int i = 0; i < cells * cells; i++) {
+        power[i] = (float)(picture[i] * setup->cell_m * setup->cell_m);
+    }
+    const int result = pix_spread(power, cells, cells, aperture);
+    if (result == 0) {
+        pix_coarsen(power, cells, cells, NM_CELLS_PER_PIXEL, power);
+    }
+    for (int i = 0; i < side * side && result == 0; i++) {
+        amplitudes[i] = sqrt((double)power[i]);
+    }
+    free(power);
+    return result;
+}
+
 void nm_kernel_make(double resolution_m, double cell_m, double gain, double *kernel)
 {
     double line[PIX_KERNEL_SIDE];

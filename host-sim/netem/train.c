@@ -13,6 +13,7 @@ void nm_sample_free(struct nm_sample *sample)
     nm_paths_free(&sample->paths);
     nm_picture_close(&sample->real);
     free(sample->own);
+    free(sample->own_amplitudes);
     *sample = (struct nm_sample){0};
 }
 

@@ -73,13 +73,11 @@ static int trace_aspect(struct nm_experiment *e, struct hidden *h, struct nm_sam
                         double depression_deg)
 {
     struct nm_target_view view = e->view;
-    const size_t cells = (size_t)e->settings.setup.cells * (size_t)e->settings.setup.cells;
     struct nm_paths again;
     view.setup.law = h->law;
     view.setup.materials = h->materials;
-    sample->own = malloc(cells * sizeof *sample->own);
-    if (!sample->own || nm_target_view_paths(&e->view, sample->azimuth_deg, depression_deg,
-                                             &sample->paths, &e->dataset.law) != 0) {
+    if (nm_target_view_paths(&e->view, sample->azimuth_deg, depression_deg, &sample->paths,
+                             &e->dataset.law) != 0) {
         return -1;
     }
     if (h->truth.wavelength_m == 0) {
@@ -88,7 +86,7 @@ static int trace_aspect(struct nm_experiment *e, struct hidden *h, struct nm_sam
         }
         nm_paths_free(&again);
     }
-    return nm_draw_by_law(&sample->paths, &e->dataset.law, sample->own);
+    return nm_sample_draw(sample, &e->settings.setup, &e->dataset.law);
 }
 
 static int make_chips(struct nm_experiment *e, struct hidden *h)

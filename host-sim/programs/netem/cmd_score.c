@@ -1,9 +1,11 @@
 #include "commands.h"
 
 #include "hs/error.h"
+#include "hs/report.h"
 #include "netem/experiment.h"
 
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 
 static const struct hs_usage usage = {
@@ -12,12 +14,71 @@ static const struct hs_usage usage = {
     "gain is fitted on the training chips, and compare both with the real chip; CW-SSIM also\n"
     "with both at the gains that suit it best on the training chips. Leaves\n"
     "scores.tsv, cw-ssim.png and table.png in the folder. Chips, calibration, --share and\n"
-    "--seed must be those of the training, or the chips that validate are not the same."};
+    "--seed must be those of the training, or the chips that validate are not the same.\n"
+    "Beside them stand null models, which simulate nothing: a flat picture, the mean of the\n"
+    "training chips, and the training chip of the nearest other azimuth. --others takes lists of\n"
+    "other vehicles' chips, as `register` leaves them for this model: they should fit worse."};
 
-enum { OPTIONS = NM_TARGET_OPTIONS + NM_CHIP_OPTIONS + 4 };
+enum { OPTIONS = NM_TARGET_OPTIONS + NM_CHIP_OPTIONS + 5 };
+
+static int beside(struct nm_experiment *e, const struct nm_samples *samples, const char *path,
+                  const struct nm_summary *summary, bool *is_first, bool *is_first_by_mse)
+{
+    struct nm_chip_list list;
+    struct nm_vehicle v = {.name = path};
+    if (nm_chip_list_read(&list, path) != 0) {
+        return -1;
+    }
+    const int result =
+        nm_experiment_beside(e, samples, &list, summary, &v, is_first, is_first_by_mse);
+    nm_chip_list_free(&list);
+    if (result == 0) {
+        printf("  other vehicle, %s, %d chips: mse %.6f   cw-ssim %.4f, at the best gain %.4f\n",
+               v.name, v.count, v.fit.mse, v.fit.cw_ssim, v.fit.best_cw_ssim);
+        hs_report_object(NULL);
+        hs_report_text("file", v.name);
+        hs_report_integer("chips", v.count);
+        hs_report_real("mse", v.fit.mse);
+        hs_report_real("cw_ssim", v.fit.cw_ssim);
+        hs_report_real("best_cw_ssim", v.fit.best_cw_ssim);
+        hs_report_close();
+    }
+    return result;
+}
+
+static int beside_all(struct nm_experiment *e, const struct nm_samples *samples,
+                      const struct hs_list *others, const struct nm_summary *summary)
+{
+    int result = 0, first = 0, first_by_mse = 0;
+    bool *is_first = malloc(2 * ((size_t)samples->count + 1) * sizeof *is_first);
+    bool *is_first_by_mse = is_first + samples->count;
+    if (!is_first) {
+        return hs_error("scores", NULL, "out of memory");
+    }
+    memset(is_first, true, 2 * (size_t)samples->count * sizeof *is_first);
+    hs_report_array("others");
+    for (int i = 0; i < others->count && result == 0; i++) {
+        result = beside(e, samples, others->items[i], summary, is_first, is_first_by_mse);
+    }
+    hs_report_close();
+    for (int i = 0; i < samples->count; i++) {
+        first += is_first[i];
+        first_by_mse += is_first_by_mse[i];
+    }
+    free(is_first);
+    if (result == 0) {
+        printf(
+            "  fitted better than the others' chips of the nearest azimuths: %d of %d by "
+            "cw-ssim at the best gain, %d by mse\n",
+            first, samples->count, first_by_mse);
+        hs_report_integer("first_by_cw_ssim", first);
+        hs_report_integer("first_by_mse", first_by_mse);
+    }
+    return result;
+}
 
 static int run(const struct nm_settings *settings, const struct nm_chip_list *list,
-               const char *training, const char *set, const char *out)
+               const char *training, const char *set, const struct hs_list *others, const char *out)
 {
     struct nm_experiment e;
     struct nm_summary summary;
@@ -31,19 +92,36 @@ static int run(const struct nm_settings *settings, const struct nm_chip_list *li
                                               ? nm_dataset_training(&e.dataset)
                                               : nm_dataset_validation(&e.dataset);
         result = nm_experiment_score(&e, &samples, out, &summary);
-    }
-    if (result == 0) {
-        nm_summary_print(&summary, set);
+        if (result == 0) {
+            nm_summary_print(&summary, set);
+            result = others->count > 0 ? beside_all(&e, &samples, others, &summary) : 0;
+        }
     }
     nm_experiment_close(&e);
     return result;
 }
 
+static int score(const struct nm_settings *s, const char *training, const char *set,
+                 const struct hs_list *others, const char *out)
+{
+    struct nm_chip_list list;
+    if (strcmp(set, "validation") != 0 && strcmp(set, "training") != 0) {
+        hs_error("--set", NULL, "must be validation or training, not %s", set);
+        return HS_EXIT_USAGE;
+    }
+    if (nm_chip_list_read(&list, s->chips) != 0) {
+        return HS_EXIT_FAILED;
+    }
+    const int result = run(s, &list, training, set, others, out);
+    nm_chip_list_free(&list);
+    return result == 0 ? HS_EXIT_OK : HS_EXIT_FAILED;
+}
+
 int nm_cmd_score(int argc, char **argv)
 {
     struct nm_settings s = nm_settings_default();
-    struct nm_chip_list list;
     const char *out = NULL, *training = NULL, *set = "validation";
+    struct hs_list others = {.count = 0};
     int exit_code;
     struct hs_option options[OPTIONS] = {
         {"training", HS_INPUT, &training, 0, 0, "FILE", "that `train` left", true},
@@ -51,20 +129,15 @@ int nm_cmd_score(int argc, char **argv)
         {"set", HS_TEXT, &set, 0, 0, "validation|training", "which chips; default validation",
          false},
         {"seed", HS_INTEGER, &s.seed, 0, 1e15, "N", "of the division into both", false},
+        {"others", HS_INPUTS, &others, 0, 0, "LIST,...", "of chips of other vehicles", false},
     };
-    nm_target_options(&s, options + 4);
-    nm_chip_options(&s, options + 4 + NM_TARGET_OPTIONS);
+    nm_target_options(&s, options + 5);
+    nm_chip_options(&s, options + 5 + NM_TARGET_OPTIONS);
     if (!hs_options_read(&usage, options, OPTIONS, argc, argv, &exit_code)) {
+        hs_list_free(&others);
         return exit_code;
     }
-    if (strcmp(set, "validation") != 0 && strcmp(set, "training") != 0) {
-        hs_error("--set", NULL, "must be validation or training, not %s", set);
-        return HS_EXIT_USAGE;
-    }
-    if (nm_chip_list_read(&list, s.chips) != 0) {
-        return HS_EXIT_FAILED;
-    }
-    const int result = run(&s, &list, training, set, out);
-    nm_chip_list_free(&list);
-    return result == 0 ? HS_EXIT_OK : HS_EXIT_FAILED;
+    exit_code = score(&s, training, set, &others, out);
+    hs_list_free(&others);
+    return exit_code;
 }

@@ -28,6 +28,11 @@ double nm_frame_mean(const struct nm_picture *picture);
 int nm_dataset_chip(struct nm_chip *chip, struct nm_chip_entry *entry,
                     const struct nm_calibration *calibration);
 
+/* The simulator's own pictures of a traced sample by `law`: `own` and `own_amplitudes`. Returns 0,
+ * or -1 out of memory, reported. */
+int nm_sample_draw(struct nm_sample *sample, const struct setup *setup,
+                   const struct reflect_law *law);
+
 struct nm_dataset {
     struct nm_sample *samples; /* owned; the first `training` are for training */
     int count, training;

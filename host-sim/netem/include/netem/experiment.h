@@ -2,6 +2,7 @@
 #ifndef NETEM_EXPERIMENT_H
 #define NETEM_EXPERIMENT_H
 
+#include "netem/null_model.h"
 #include "netem/score.h"
 #include "netem/settings.h"
 #include "netem/train.h"
@@ -40,9 +41,11 @@ int nm_experiment_plot(const struct nm_training *t, const char *folder, int mate
  * is best. */
 struct nm_summary {
     struct nm_score learned, own;  /* networks as trained; own law at the gain of least squares */
-    double own_gain;               /* that gain over the kernel's */
+    double own_gain;               /* of the amplitudes that landmass-target render writes */
     double learned_best, own_best; /* CW-SSIM at each one's best gain */
     double learned_best_gain, own_best_gain; /* those gains, over the two above */
+    struct nm_score nulls[NM_NULLS];         /* as trained: they need no gain */
+    double near_deg;                         /* how far the nearest other chips are away */
     int count;
 };
 
@@ -51,6 +54,21 @@ struct nm_summary {
  * the training chips. Returns 0, or -1 reported. */
 int nm_experiment_score(struct nm_experiment *e, const struct nm_samples *samples,
                         const char *folder, struct nm_summary *summary);
+
+/* How the learned simulator fits chips of other vehicles. */
+struct nm_vehicle {
+    const char *name; /* borrowed */
+    int count;
+    struct nm_fit fit; /* mean */
+};
+
+/* Score another vehicle's chips, whose aspects are known (`register` finds those that this model
+ * fits best), at the best gain of `summary`. Each of `chips` stays first in is_first[i] as long as
+ * its own simulated picture fits it better, by CW-SSIM at that gain, than the other vehicle's chip
+ * of the nearest azimuth; likewise is_first_by_mse. Returns 0, or -1 reported. */
+int nm_experiment_beside(struct nm_experiment *e, const struct nm_samples *chips,
+                         const struct nm_chip_list *others, const struct nm_summary *summary,
+                         struct nm_vehicle *vehicle, bool *is_first, bool *is_first_by_mse);
 
 /* Print the summary, and report it as the object "score" (hs/report.h). */
 void nm_summary_print(const struct nm_summary *summary, const char *what);

@@ -26,6 +26,12 @@ int nm_target_view_paths(const struct nm_target_view *v, double azimuth_deg, dou
  */
 int nm_draw_by_law(const struct nm_paths *paths, const struct reflect_law *law, double *picture);
 
+/* From step 4 by a law to the amplitudes that `landmass-target render --csv` writes: power is
+ * spread by the squared response, averaged over each pixel, and its root taken. `picture` has
+ * cells^2 numbers, `amplitudes` a number for each pixel. Returns 0, or -1 out of memory, reported.
+ */
+int nm_law_amplitudes(const struct setup *setup, const double *picture, double *amplitudes);
+
 /* The law's coefficient for one reflection. */
 double nm_law_ask(const struct reflect_law *law, const struct nm_reflection *reflection,
                   enum nm_direction direction);

@@ -25,6 +25,7 @@ struct nm_sample {
     struct nm_picture real;  /* owned; 0..1, after (12) */
     struct nm_origin origin; /* where the simulated chip is expected on the real one */
     double *own;             /* owned: step 4 by the simulator's own law, cells^2 */
+    double *own_amplitudes;  /* owned: its finished chip before tanh, side_px^2; may be NULL */
 };
 
 /* Harmless on a zeroed struct. */

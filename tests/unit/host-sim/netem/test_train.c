@@ -68,6 +68,7 @@ static void make_chip(struct world *w, struct nm_sample *s, uint64_t aspect, int
     struct hs_rng rng;
     double *values[2], far[CELLS * CELLS];
     struct nm_simulator *simulator = &w->training->simulator;
+    *s = (struct nm_sample){0};
     facets_make(&records, 100 + aspect, RAYS, CELLS);
     assert_int_equal(nm_paths_build(&s->paths, &records), 0);
     trace_records_free(&records);

@@ -104,6 +104,54 @@ TEST(learned_chips_can_be_made_and_read_again)
                      0);
 }
 
+/* The own law is given what `landmass-target render --csv` writes, so it fits that without error;
+ * it once took power for amplitude. The null models are worse, the flat one by all of the variance.
+ */
+TEST(the_own_law_is_scored_by_the_amplitudes_that_render_writes)
+{
+    const char *b = support_build_dir();
+    assert_int_equal(
+        support_run("mkdir -p %s/law && cd %s/law && for a in 0 40 80 120 160; do $OLDPWD/%s/bin/"
+                    "landmass-target render --model slicy --cells 64 --rays 2 --azimuth $a --csv "
+                    "$a.csv || exit 1; echo $a.csv $a 15 0 0 10 training; done > list && "
+                    "sed -i '4,5s/training/validation/' list",
+                    folder, folder, b),
+        0);
+    assert_int_equal(support_run("%s/bin/landmass-netem score --model slicy --cells 64 --rays 2 "
+                                 "--training %s/whole/training.netem --chips %s/law/list --out "
+                                 "%s/law/score --json %s/law/json",
+                                 b, folder, folder, folder, folder),
+                     0);
+    assert_int_equal(support_run("python3 -c 'import json, sys\n"
+                                 "s = json.load(open(sys.argv[1]))[\"report\"][\"score\"]\n"
+                                 "print(s)\n"
+                                 "assert s[\"own_law\"][\"mse\"] < 1e-6\n"
+                                 "for null in \"flat\", \"mean_chip\", \"nearest_chip\":\n"
+                                 "    assert s[null][\"mse\"] > 1e-4\n"
+                                 "assert s[\"nearest_chip_deg\"] == 60' %s/law/json",
+                                 folder),
+                     0);
+}
+
+/* Chips of "another vehicle" that are the learned simulator's own fit without error, and the
+ * law's chips are never first beside them. */
+TEST(other_vehicles_are_scored_beside)
+{
+    assert_int_equal(support_run("%s/bin/landmass-netem score --model slicy --cells 64 --rays 1 "
+                                 "--training %s/whole/training.netem --chips %s/law/list --others "
+                                 "%s/made/list --out %s/beside --json %s/beside.json",
+                                 support_build_dir(), folder, folder, folder, folder, folder),
+                     0);
+    assert_int_equal(
+        support_run("python3 -c 'import json, sys\n"
+                    "r = json.load(open(sys.argv[1]))[\"report\"]\n"
+                    "print(r)\n"
+                    "assert len(r[\"others\"]) == 1 and r[\"others\"][0][\"mse\"] < 1e-9\n"
+                    "assert r[\"others\"][0][\"chips\"] == 3' %s/beside.json",
+                    folder),
+        0);
+}
+
 TEST(what_was_learned_can_be_baked)
 {
     assert_int_equal(support_run("%s/bin/landmass-netem bake --model slicy --rays 1 --aspects 3 "
