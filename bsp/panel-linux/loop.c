@@ -20,8 +20,8 @@ enum {
     ALIVE_PICTURES = 15, /* half a second of them */
     /* The fault lamp calls somebody to the equipment. The edge of the map and a sender of weather
      * that has gone quiet are no work for him, and the glass says them. */
-    LAMP_FAULTS =
-        LM_FLAGS_FAULT & ~(LM_FLAG_OFF_MAP | LM_FLAG_WEATHER | LM_FLAG_BELOW | LM_FLAG_MAGNETIC)
+    LAMP_FAULTS = LM_FLAGS_FAULT & ~(LM_FLAG_OFF_MAP | LM_FLAG_WEATHER | LM_FLAG_BELOW |
+                                     LM_FLAG_MAGNETIC | LM_FLAG_EXERCISE)
 };
 
 /* Touch the stack that the loop may need, so that its pages are there and locked. */

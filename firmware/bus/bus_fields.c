@@ -12,6 +12,9 @@ const struct lm_bus_scale lm_bus_scales[LM_BUS_UNITS] = {
     [LM_BUS_DB_Q8] = {"dB", "dB x 256", 1, 1, 8},
     [LM_BUS_BITS] = {"bits", "bits", 1, 1, 0},
     [LM_BUS_STATE] = {"state", "state", 1, 1, 0},
+    [LM_BUS_MS] = {"ms", "ms", 1, 1, 0},
+    [LM_BUS_RATE] = {"x", "x 256", 1, 1, 8},
+    [LM_BUS_NUMBER] = {"number", "number", 1, 1, 0},
 };
 
 const struct lm_bus_field_info lm_bus_fields[LM_BUS_FIELDS] = {
@@ -47,6 +50,9 @@ const struct lm_bus_field_info lm_bus_fields[LM_BUS_FIELDS] = {
     [LM_BUS_WEATHER_CLEAR] = {"weather-clear", LM_BUS_BITS},
     [LM_BUS_SEA_STATE] = {"sea-state", LM_BUS_STATE},
     [LM_BUS_WIND_DIRECTION] = {"wind-direction", LM_BUS_BAM},
+    [LM_BUS_EXERCISE_TIME] = {"exercise-time", LM_BUS_MS},
+    [LM_BUS_EXERCISE_RATE] = {"exercise-rate", LM_BUS_RATE},
+    [LM_BUS_EXERCISE_SEED] = {"exercise-seed", LM_BUS_NUMBER},
 };
 
 int64_t lm_bus_divide(int64_t n, int64_t divisor)

@@ -19,6 +19,13 @@ enum { TEN_MILLIONTHS = 10000000 };
         .per_unit = (types_)&TYPE(LONG) ? TEN_MILLIONTHS : 1                                       \
     }
 
+/* A whole number, once a second, of the exercise. */
+#define COUNT_ROW(name_, id_, field_, types_, low_, high_)                                         \
+    {                                                                                              \
+        .name = (name_), .id = (id_), .field = LM_BUS_##field_, .types = (types_), .low = (low_),  \
+        .high = (high_), .period_us = 1000000, .stale_ms = 3000, .dead_ms = 10000, .per_unit = 1   \
+    }
+
 /* Ages. What comes every 100 ms is stale when three in a row were lost; one lost frame is a common
  * thing on a bus. Attitude and heading come eight times as often and turn fast: at 100 ms a roll of
  * 90 deg/s is wrong by 9 degrees, at 1 s it says nothing any more. Position and velocity die after
@@ -84,6 +91,9 @@ static const struct lm_bus_row canas17_rows[] = {
     ROW("sea state",                            1808, SEA_STATE,        0, TYPE(UCHAR),   0,     8, 1000000, 3000, 10000),
     ROW("sea wind direction",                   1809, WIND_DIRECTION,   0, TYPE(FLOAT), -180,   360, 1000000, 3000, 10000),
     ROW("wind direction",                        334, WIND_DIRECTION,   1, ANALOGUE,    -180,   360, 1000000, 3000, 10000),
+    COUNT_ROW("exercise time",                  1820, EXERCISE_TIME,       TYPE(LONG),     0, INT32_MAX),
+    ROW("exercise rate",                        1821, EXERCISE_RATE,    0, TYPE(FLOAT),    0,    16, 1000000, 3000, 10000),
+    COUNT_ROW("exercise seed",                  1822, EXERCISE_SEED,       TYPE(LONG),     0, INT32_MAX),
 };
 
 /* What XCSoar's driver takes, and what is made for it therefore sends: byte 1 says nothing, each

@@ -45,6 +45,7 @@ void lm_sector_start(struct lm_sector *s, const struct lm_radar *radar,
     s->environment = NULL;
     s->targets = NULL;
     s->chips = NULL;
+    s->is_shared = false;
     s->command = *command;
     s->is_begun = s->is_leftward = false;
     s->taps[0] = s->taps[1] = (struct lm_sector_taps){.is_kept = false};
@@ -195,14 +196,26 @@ static bool differs(int32_t a_m_q10, int32_t b_m_q10)
     return fx_abs_u32(a_m_q10 - b_m_q10) > fx_abs_u32(a_m_q10) / 128 + 1024;
 }
 
+/* A height in steps of 1/64 to 1/128 of itself, at least of a metre, below 2^31: it hangs on no
+ * other height. */
+static int32_t coarse_m_q10(int32_t height_m_q10)
+{
+    const uint32_t size = fx_abs_u32(height_m_q10) | 1u << 17;
+    const uint32_t log2 = 31u - (uint32_t)__builtin_clz(size) - 7;
+    return (int32_t)((uint32_t)(height_m_q10 + (1 << log2 >> 1)) >> log2 << log2);
+}
+
 /* Recompute the ranges if the height has changed by a hundredth and a metre, or the window has
  * changed. Until then all stages keep the old height, gain and horizon alike. */
 static void refresh_ranges(struct lm_sector *s, struct lm_tile_cache *tiles, int32_t height_m_q10,
                            int32_t reference_m_q10, uint32_t old_edge_m_q8, uint32_t old_half_m)
 {
+    const bool has_height = s->is_shared ? height_m_q10 == s->grid.height_m_q10 &&
+                                               reference_m_q10 == s->grid.reference_m_q10
+                                         : !differs(height_m_q10, s->grid.height_m_q10) &&
+                                               !differs(reference_m_q10, s->grid.reference_m_q10);
     const bool is_same = s->grid.cells != 0 && s->edge_m_q8 == old_edge_m_q8 &&
-                         s->half_m == old_half_m && !differs(height_m_q10, s->grid.height_m_q10) &&
-                         !differs(reference_m_q10, s->grid.reference_m_q10);
+                         s->half_m == old_half_m && has_height;
     if (!is_same) {
         set_ranges(s, tiles, height_m_q10, reference_m_q10);
     }
@@ -254,16 +267,21 @@ void lm_sector_begin(struct lm_sector *s, struct lm_tile_cache *tiles,
     const uint32_t old_edge_m_q8 = s->edge_m_q8, old_half_m = s->half_m;
     s->half_m = s->radar->range[s->command.range_index].range_m * fov_of(s)->window_permille / 1000;
     set_lod(s, tiles->db);
-    const int32_t reference_m_q10 = reference_m_q10_of(tiles, s->lod, platform->position);
+    int32_t height_m_q10 = platform->height_m_q10,
+            reference_m_q10 = reference_m_q10_of(tiles, s->lod, platform->position);
+    if (s->is_shared) {
+        height_m_q10 = coarse_m_q10(height_m_q10);
+        reference_m_q10 = coarse_m_q10(reference_m_q10);
+    }
     s->up = platform->heading;
     s->platform = *platform;
     lm_geo_set_origin(&s->origin, platform->position);
     if (lm_sector_is_window(s)) {
-        set_window(s, platform, platform->height_m_q10 - reference_m_q10);
+        set_window(s, platform, height_m_q10 - reference_m_q10);
     } else {
         set_sector(s);
     }
-    refresh_ranges(s, tiles, platform->height_m_q10, reference_m_q10, old_edge_m_q8, old_half_m);
+    refresh_ranges(s, tiles, height_m_q10, reference_m_q10, old_edge_m_q8, old_half_m);
     if (lm_sector_is_window(s)) {
         s->has_foreground = false;
         lm_beam_clear(&s->beam); /* its samples were traced from another position */
@@ -279,6 +297,21 @@ void lm_sector_begin(struct lm_sector *s, struct lm_tile_cache *tiles,
     s->is_begun = true;
     s->has_taps = false;
     s->grain = (struct lm_grain_stretch){.start = lm_grain_start(LM_GRAIN_SPECKLE, s->sweep)};
+}
+
+void lm_sector_join(struct lm_sector *s, const struct lm_sector_turn *turn)
+{
+    const bool is_leftward = turn->sweep % 2 != 0;
+    if (turn->skipped != 0 || s->sweep != turn->sweep || s->is_leftward != is_leftward) {
+        lm_beam_clear(&s->beam);
+    }
+    lm_sector_floor_clear(&s->floor);
+    s->sweep = turn->sweep;
+    s->is_leftward = is_leftward;
+    s->line = is_leftward ? s->lines - 1 - turn->skipped : turn->skipped;
+    s->platform.time_us = turn->time_us;
+    s->grain.start = lm_grain_start(LM_GRAIN_SPECKLE, s->sweep);
+    set_tilt(s);
 }
 
 static void move_on(struct lm_sector *s)
@@ -475,6 +508,9 @@ static void take_sample(struct lm_sector *s, struct lm_tile_cache *tiles, int32_
                         struct lm_line *line)
 {
     const fx_bam_t azimuth = s->up + (fx_bam_t)lm_beam_azimuth(&s->beam, s->radar, sample);
+    if (s->is_shared) { /* the number chooses a draw: no sweep has 2^12 samples */
+        s->samples = (s->sweep << 12) + (uint32_t)sample;
+    }
     follow(s);
     trace_average(s, tiles, azimuth, line);
     const bool has_steady =

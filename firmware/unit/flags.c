@@ -55,6 +55,7 @@ uint32_t lm_update_flags(struct lm_unit *u, uint64_t now_us)
                            (u->page.is_override ? LM_FLAG_SILENT : 0u) |
                            (u->picture.coverage.is_off_map ? LM_FLAG_OFF_MAP : 0u) |
                            (u->weather.is_stale ? LM_FLAG_WEATHER : 0u) |
+                           (u->exercise.is_stale ? LM_FLAG_EXERCISE : 0u) |
                            (now_us < u->unable.until_us ? LM_FLAG_UNABLE : 0u) |
                            (now_us - u->last_bus_us > LM_BUS_SILENT_US ? LM_FLAG_BUS : 0u);
     const uint32_t risen = flags & ~u->flags;

@@ -80,10 +80,10 @@ static enum lm_refusal start(struct lm_picture *p, const struct lm_sar_command *
                                        .targets = &map->target_set,
                                        .chips = &map->chips,
                                        .relief = relief_of(p, &command),
-                                       .epoch = p->lent.noise_seed,
+                                       .epoch = p->lent.exercise->seed,
                                        .sea_state = p->lent.environment->sea_state,
                                        .environment = p->lent.environment,
-                                       .time_us = now_us};
+                                       .time_us = p->lent.exercise->time_us};
     const enum lm_refusal reason = lm_sar_judge(p->lent.radar, &command, &scene);
     if (reason != LM_REFUSED_NOT) {
         return reason;

@@ -3,6 +3,11 @@
 #include "ownship.h"
 #include "picture_kind.h"
 
+enum {
+    WINDOW_GRID_US = 250000,
+    LATE_MOST_US = 40000 /* a sweep that begins later than this is joined at a later line */
+};
+
 static struct lm_beam_setting beam_of(const struct lm_page *page)
 {
     return (struct lm_beam_setting){
@@ -19,6 +24,7 @@ static enum lm_refusal start(struct lm_picture *p, const struct lm_sar_command *
 {
     (void)patch;
     (void)now_us;
+    p->turn.period_us = 0;
     const struct lm_page *page = p->lent.page;
     p->is_recentred = false;
     p->is_cursor_awaited = page->fov != LM_FOV_NORM && !p->lent.cursor->is_placed;
@@ -30,7 +36,7 @@ static enum lm_refusal start(struct lm_picture *p, const struct lm_sar_command *
         .centre = p->lent.cursor->position,
         .beam = beam_of(page),
     };
-    lm_sector_start(&p->sector, p->lent.radar, &command, p->lent.noise_seed);
+    lm_sector_start(&p->sector, p->lent.radar, &command, p->lent.exercise->seed);
     p->sector.targets = &p->lent.map->target_set;
     p->sector.chips = &p->lent.map->chips;
     p->sector.environment = p->lent.environment;
@@ -48,14 +54,17 @@ static void prefetch_none(struct lm_picture *p)
     (void)p;
 }
 
+/* Between two sweeps of an exercise the antenna rests until the next one's time has come. */
 static bool is_ready(struct lm_picture *p, uint64_t now_us)
 {
-    (void)p;
     (void)now_us;
-    return true;
+    const struct lm_exercise *x = p->lent.exercise;
+    const bool is_resting = x->rate_q8 != 0 && x->time_us >= p->turn.begun_us &&
+                            x->time_us - p->turn.begun_us < p->turn.period_us;
+    return !is_resting || !lm_sector_is_at_edge(&p->sector);
 }
 
-static struct lm_platform platform_of(const struct lm_picture *p, uint64_t now_us)
+static struct lm_platform platform_of(const struct lm_picture *p)
 {
     const struct lm_ownship *own = p->lent.ownship;
     const bool is_moving = own->velocity_quality != LM_NAV_DEAD;
@@ -65,7 +74,7 @@ static struct lm_platform platform_of(const struct lm_picture *p, uint64_t now_u
         .heading = own->heading,
         .track = own->track,
         .speed_mm_s = is_moving ? (uint32_t)own->ground_speed_mm_s : 0,
-        .time_us = now_us,
+        .time_us = p->lent.exercise->time_us,
     };
 }
 
@@ -105,6 +114,43 @@ static void remove_unreached(struct lm_picture *p)
                         (fx_bam_t)lm_sector_edge_bam(s, s->lines));
 }
 
+/* Time from one sweep to the next by the exercise clock. Those over a window take different times;
+ * the antenna rests behind them, and the sweeps still begin on a common grid. A sweep takes less
+ * than 2^26 us, times a rate of at most 2^12. */
+static uint64_t period_us(const struct lm_picture *p)
+{
+    const struct lm_sector *s = &p->sector;
+    const uint64_t sweep_us = (uint64_t)s->lines * lm_sector_line_us(s);
+    const uint64_t grid_us = lm_sector_is_window(s) ? WINDOW_GRID_US : 1;
+    const uint32_t rate_q8 = p->lent.exercise->rate_q8;
+    const uint64_t turn_us = (sweep_us + grid_us - 1) / grid_us * grid_us;
+    return rate_q8 != 0 ? turn_us * rate_q8 / LM_EXERCISE_RATE_ONE + 1 : turn_us + 1;
+}
+
+/* Join the sweep that the exercise is in, at the line where its antenna is. While the exercise
+ * stands, its sweep is drawn over and over. */
+static void join_exercise(struct lm_picture *p, uint64_t now_us)
+{
+    struct lm_sector *s = &p->sector;
+    const struct lm_exercise *x = p->lent.exercise;
+    p->turn.period_us = period_us(p);
+    const uint64_t number = x->time_us / p->turn.period_us;
+    p->turn.begun_us = number * p->turn.period_us;
+    const uint64_t into_us = x->time_us - p->turn.begun_us;
+    const uint64_t late_us = x->rate_q8 != 0 ? into_us * LM_EXERCISE_RATE_ONE / x->rate_q8 : 0;
+    const uint32_t line_us = lm_sector_line_us(s);
+    const uint64_t over = late_us > LATE_MOST_US ? late_us / line_us : 0;
+    const uint32_t skipped = over < s->lines ? (uint32_t)over : s->lines - 1;
+    const uint64_t behind_us = late_us - (uint64_t)skipped * line_us;
+    const struct lm_sector_turn turn = {
+        .sweep = x->seed + (uint32_t)number,
+        .skipped = skipped,
+        .time_us = p->turn.begun_us,
+    };
+    lm_sector_join(s, &turn);
+    p->next_line_us = now_us > behind_us ? now_us - behind_us : 0;
+}
+
 static enum lm_sweep begin(struct lm_picture *p, uint64_t now_us)
 {
     if (!lm_sector_is_at_edge(&p->sector)) {
@@ -116,8 +162,12 @@ static enum lm_sweep begin(struct lm_picture *p, uint64_t now_us)
         return LM_SWEEP_BEGUN_AT_COST;
     }
     p->is_recentred = false;
-    const struct lm_platform platform = platform_of(p, now_us);
+    const struct lm_platform platform = platform_of(p);
+    p->sector.is_shared = p->lent.exercise->is_told;
     lm_sector_begin(&p->sector, &p->lent.map->tiles, &platform);
+    if (p->sector.is_shared) {
+        join_exercise(p, now_us);
+    }
     lm_page_note_tilt(p->lent.page, p->sector.tilt);
     lm_coverage_judge(&p->coverage);
     lm_coverage_restart(&p->coverage);
@@ -130,8 +180,9 @@ static enum lm_sweep begin(struct lm_picture *p, uint64_t now_us)
 
 static bool sample_ahead(struct lm_picture *p, uint64_t now_us, uint32_t *azimuths)
 {
+    (void)now_us;
     struct lm_sector *s = &p->sector;
-    const struct lm_platform platform = platform_of(p, now_us);
+    const struct lm_platform platform = platform_of(p);
     const uint32_t samples = s->samples;
     const bool has_all =
         lm_sector_sample_ahead(s, &p->lent.map->tiles, &platform, azimuths, &p->line);
@@ -143,7 +194,8 @@ static bool sample_ahead(struct lm_picture *p, uint64_t now_us, uint32_t *azimut
 
 static uint32_t draw_line(struct lm_picture *p, uint64_t now_us)
 {
-    const struct lm_platform platform = platform_of(p, now_us);
+    (void)now_us;
+    const struct lm_platform platform = platform_of(p);
     return lm_sector_draw_line(&p->sector, &p->lent.map->tiles, &platform,
                                &p->tone[LM_PICTURE_SECTOR], &p->line);
 }

@@ -20,7 +20,7 @@ static void init_picture(struct lm_unit *u)
         .ownship = &u->ownship,
         .page = &u->page,
         .cursor = &u->cursor,
-        .noise_seed = board->noise_seed,
+        .exercise = &u->exercise,
         .options = board->options,
     };
     const struct lm_plane plane = {board->plane, board->display->width_px,
@@ -60,6 +60,7 @@ int lm_unit_init(struct lm_unit *u, const struct lm_board *board)
     lm_canas_control_init(&u->control_bus, board->tells_reports ? node : 0,
                           board->obeys_controls && bus->framing == LM_BUS_CANAEROSPACE);
     lm_unit_weather_init(&u->weather);
+    lm_exercise_init(&u->exercise, board->noise_seed);
     lm_page_init(&u->page, u->map.radar);
     u->ground_m_q10 = LM_NO_ELEVATION;
     init_picture(u);
@@ -74,6 +75,7 @@ static void take_frame(struct lm_unit *u, const struct lm_can_frame *frame)
     for (uint32_t i = 0; i < count; i++) {
         lm_nav_take(&u->nav, &events[i]);
         lm_weather_bus_take(&u->weather.bus, &events[i]);
+        lm_exercise_take(&u->exercise, &events[i]);
     }
     lm_canas_service_take(&u->service, frame);
     lm_canas_control_take(&u->control_bus, frame);
@@ -97,6 +99,7 @@ static void take_bus(struct lm_unit *u, uint64_t now_us)
     }
     lm_canas_service_answer(&u->service, can, u->flags, now_us);
     lm_nav_at(&u->nav, now_us, &u->ownship);
+    lm_exercise_at(&u->exercise, now_us);
 }
 
 /* After a jump of the position or a change of its sender, start the picture again: lines seen from

@@ -152,6 +152,21 @@ static int put_weather(struct sender *s, double now_s)
     return 0;
 }
 
+static int put_exercise(struct sender *s, double now_s, int64_t first_us)
+{
+    struct canas_frame frames[NAV_EXERCISE_FRAMES];
+    const double period_s = MINOR_US * 1e-6 / s->options->rate_scale;
+    const int64_t sent_us = s->slot_us + (NAV_EXERCISE_FRAMES - 1) * SLOT_US;
+    const int count = nav_exercise_frames(&s->options->exercise, &s->codes, now_s, period_s,
+                                          (double)(sent_us - first_us) * 1e-6, frames);
+    for (int i = 0; i < count; i++) {
+        if (put(s, &frames[i]) != 0) {
+            return -1;
+        }
+    }
+    return 0;
+}
+
 static int put_minor_frame(struct sender *s, uint64_t number, int64_t tick_us)
 {
     s->slot_us = tick_us;
@@ -185,9 +200,11 @@ int nav_send(const struct nav_track *track, const struct nav_send_options *optio
             break;
         }
         if (nav_motion_covers(&s.motion, tick_us)) {
-            failed = put_minor_frame(&s, n, tick_us) != 0
+            const double now_s = (double)(tick_us - first_us) * 1e-6;
+            failed = put_minor_frame(&s, n, tick_us) != 0 || put_weather(&s, now_s) != 0 ||
+                             put_exercise(&s, now_s, first_us) != 0
                          ? -1
-                         : put_weather(&s, (double)(tick_us - first_us) * 1e-6);
+                         : 0;
             active++;
         }
         hs_progress_update(&progress, tick_us > first_us ? (uint64_t)(tick_us - first_us) : 0);

@@ -4,6 +4,7 @@
 #include "fuzz.h"
 #include "lm/bus.h"
 #include "lm/canas_service.h"
+#include "lm/exercise.h"
 #include "lm/nav.h"
 #include "lm/status.h"
 #include "lm/weather_bus.h"
@@ -30,6 +31,21 @@ static void check_weather(struct lm_weather_bus *w, const struct lm_bus_event *e
     lm_weather_bus_at(w, now_us, &e);
     FUZZ_ASSERT(lm_environment_check(&e) == LM_OK);
     FUZZ_ASSERT(w->count.sets >= (uint32_t)e.rain_count + e.jammer_count);
+}
+
+static void check_exercise(struct lm_exercise *x, const struct lm_bus_event *events, uint32_t count,
+                           uint64_t now_us)
+{
+    const struct lm_exercise was = *x;
+    for (uint32_t i = 0; i < count; i++) {
+        lm_exercise_take(x, &events[i]);
+    }
+    lm_exercise_at(x, now_us);
+    FUZZ_ASSERT(x->rate_q8 <= LM_EXERCISE_RATE_MAX && x->seed <= INT32_MAX);
+    FUZZ_ASSERT(x->is_told || x->time_us == now_us);
+    FUZZ_ASSERT(!was.is_told || x->is_told);
+    FUZZ_ASSERT(x->rate_q8 == 0 || !was.is_told || x->time_us >= was.time_us ||
+                was.time_us - x->time_us >= LM_EXERCISE_STEP_US);
 }
 
 static struct lm_can_frame take_frame(struct fuzz_supply *s, const struct lm_bus_profile *profile,
@@ -91,6 +107,8 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
     lm_bus_init(bus, profile);
     lm_nav_init(nav);
     struct lm_weather_bus weather = {0};
+    struct lm_exercise exercise;
+    lm_exercise_init(&exercise, 1);
     struct lm_canas_service service;
     lm_canas_service_init(&service, 20, 1, 0x12);
     struct sent sent = {0};
@@ -106,6 +124,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
             lm_nav_take(nav, &events[i]);
         }
         check_weather(&weather, events, count, now_us);
+        check_exercise(&exercise, events, count, now_us);
         lm_nav_at(nav, now_us + (frames & 7) * 100000u, &ownship);
         check_ownship(&ownship);
         lm_canas_service_take(&service, &frame);

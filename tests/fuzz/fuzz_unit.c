@@ -159,6 +159,18 @@ static void queue_weather(struct world *w, struct fuzz_supply *s, bool is_jammer
     }
 }
 
+/* Time, rate and seed of the exercise. */
+static void queue_exercise(struct world *w, struct fuzz_supply *s)
+{
+    const uint32_t which = fuzz_u8(s) % 3, word = fuzz_u32(s);
+    w->message_code++;
+    if (which == 1) {
+        queue_float(w, 1821, word % 20 / 4.0);
+    } else {
+        queue_value(w, 1820 + which, LM_CANAS_LONG, word >> (word & 31));
+    }
+}
+
 static void queue_any(struct world *w, struct fuzz_supply *s)
 {
     struct lm_can_frame f = {.id = fuzz_u32(s), .time_us = w->now_us + fuzz_u16(s)};
@@ -293,6 +305,9 @@ static void act(struct world *w, struct fuzz_supply *s)
         break;
     case 13:
         queue_weather(w, s, op >> 4 & 1);
+        break;
+    case 14:
+        queue_exercise(w, s);
         break;
     default:
         step(w, 2000);

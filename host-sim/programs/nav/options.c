@@ -61,6 +61,15 @@ static const char *take_jammer(void *context, const char *text)
                : "needs LAT,LON,DB[,FROM_S[,UNTIL_S]] with -20..80 dB, up to four times";
 }
 
+static const char *take_exercise_rate(void *context, const char *text)
+{
+    struct command *c = context;
+    double v[2];
+    return nav_exercise_add_rate(&c->send.exercise, v, hs_numbers(text, ',', v, 2))
+               ? NULL
+               : "needs RATE[,FROM_S] with a rate of 0..16, up to eight times, in ascending FROM_S";
+}
+
 static const char *take_interface(void *context, const char *text)
 {
     struct command *c = context;
@@ -109,13 +118,15 @@ struct raw {
     int datum;            /* -1: by record */
     double clear_s;       /* NAN: never */
     double seconds, max_gap_s;
+    double clock_s; /* NAN: none */
+    long seed;      /* -1: none */
 };
 
 static bool read_table(struct command *c, struct raw *raw, int argc, char **argv, int *exit_code)
 {
     struct hs_taker circle = {take_circle, c}, straight = {take_straight, c},
                     interface = {take_interface, c}, begin = {take_begin, c}, rain = {take_rain, c},
-                    jammer = {take_jammer, c};
+                    jammer = {take_jammer, c}, exercise_rate = {take_exercise_rate, c};
     const struct hs_option options[] = {
         {"TRACK", HS_INPUT_ARGUMENT, &c->track_path, 0, 0, NULL,
          "a .csv, .gpx, .igc, .kml or .kmz file, plain or .gz; - is standard input", false},
@@ -166,6 +177,16 @@ static bool read_table(struct command *c, struct raw *raw, int argc, char **argv
          "take all of it away S seconds after the log's beginning; what is only not told any more "
          "is removed by the display after 10 s",
          false},
+        {"exercise-clock", HS_REAL, &raw->clock_s, 0, 2147483, "S",
+         "tell the clock of an exercise that began S seconds before the log, once a second: what "
+         "moves or fluctuates in the display follows it",
+         false},
+        {"exercise-rate", HS_TAKER, &exercise_rate, 0, 0, "RATE[,FROM_S]",
+         "from FROM_S seconds after the log's beginning on this clock runs RATE times as fast, "
+         "0..16; 0: the exercise stands; up to eight",
+         false},
+        {"exercise-seed", HS_INTEGER, &raw->seed, 0, 2147483647, "N",
+         "tell the seed of speckle and noise, too", false},
         {"datum", HS_CHOICE, &raw->datum, 0, 0, "ellipsoid|msl|barometric",
          "what heights are measured from, if the file says it wrong or not at all; they are sent "
          "as 1038, 332 or 320. Left out: as below",
@@ -201,7 +222,7 @@ bool nav_options_read(struct command *c, int argc, char **argv, int *exit_code)
                           .send = {.interface = "can0", .rate_scale = 1},
                           .speed_ms = NAN,
                           .qnh_hpa = NAN};
-    struct raw raw = {-1, NAV_POSITION_DOUBLE, -1, NAN, NAN, NAN};
+    struct raw raw = {-1, NAV_POSITION_DOUBLE, -1, NAN, NAN, NAN, NAN, -1};
     if (!read_table(c, &raw, argc, argv, exit_code)) {
         return false;
     }
@@ -210,12 +231,21 @@ bool nav_options_read(struct command *c, int argc, char **argv, int *exit_code)
             &usage, "TRACK", "or --circle or --straight must be given, and only one of them");
         return false;
     }
+    if (isnan(raw.clock_s) && (raw.seed >= 0 || c->send.exercise.rate_count > 0)) {
+        *exit_code = hs_options_wrong(&usage, "--exercise-clock",
+                                      "is missing: rate and seed belong to a clock");
+        return false;
+    }
     c->format =
         raw.format < 0 ? NAV_FORMAT_BY_NAME : (enum nav_format)(raw.format + NAV_FORMAT_CSV);
     c->datum = raw.datum < 0 ? NAV_DATUM_BY_RECORD : (enum nav_datum)raw.datum;
     c->send.position = (enum nav_position)raw.position;
     c->send.weather.has_clear = !isnan(raw.clear_s);
     c->send.weather.clear_s = raw.clear_s;
+    c->send.exercise.has_clock = !isnan(raw.clock_s);
+    c->send.exercise.start_s = raw.clock_s;
+    c->send.exercise.has_seed = raw.seed >= 0;
+    c->send.exercise.seed = (int32_t)raw.seed;
     c->seconds = isnan(raw.seconds) ? 0 : raw.seconds;
     c->limits.max_gap_s = isnan(raw.max_gap_s) ? 0 : raw.max_gap_s;
     return true;

@@ -34,7 +34,8 @@ enum lm_bus_field {
     LM_BUS_UTC,
     LM_BUS_MAGNETIC_HEADING,
     LM_BUS_MAGNETIC_VARIATION, /* of magnetic from true north, east positive */
-    LM_BUS_NAV_FIELDS, /* the fields above belong to lm/nav.h, those below to lm/weather_bus.h */
+    LM_BUS_NAV_FIELDS, /* the fields above belong to lm/nav.h; those below, down to the wind, to
+                          lm/weather_bus.h */
 
     LM_BUS_RAIN_LATITUDE = LM_BUS_NAV_FIELDS, /* of the centre of a circle of rain */
     LM_BUS_RAIN_LONGITUDE,
@@ -46,6 +47,10 @@ enum lm_bus_field {
     LM_BUS_WEATHER_CLEAR, /* removes weather: bits 0..3 circles of rain, bits 4..7 jammers */
     LM_BUS_SEA_STATE,
     LM_BUS_WIND_DIRECTION, /* that the wind blows from */
+
+    LM_BUS_EXERCISE_TIME, /* since the exercise began: lm/exercise.h */
+    LM_BUS_EXERCISE_RATE, /* seconds of the exercise in a second; 0: it stands */
+    LM_BUS_EXERCISE_SEED,
     LM_BUS_FIELDS
 };
 
@@ -60,6 +65,9 @@ enum lm_bus_unit {
     LM_BUS_DB_Q8,        /* dB * 256 */
     LM_BUS_BITS,         /* a set of bits */
     LM_BUS_STATE,        /* a number of a scale: sea state */
+    LM_BUS_MS,           /* milliseconds */
+    LM_BUS_RATE,         /* a factor * 256 */
+    LM_BUS_NUMBER,       /* a number without a unit */
     LM_BUS_UNITS
 };
 

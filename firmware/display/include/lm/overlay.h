@@ -29,9 +29,10 @@ enum lm_flag {
     LM_FLAG_UNABLE = 1 << 8,    /* the last patch asked for cannot be made */
     LM_FLAG_WEATHER = 1 << 9,   /* the bus's weather is stale and will be removed */
     LM_FLAG_BELOW = 1 << 10,    /* the aircraft is below the map's terrain */
-    LM_FLAG_MAGNETIC = 1 << 11  /* the heading is from magnetic north, and there is no variation */
+    LM_FLAG_MAGNETIC = 1 << 11, /* the heading is from magnetic north, and there is no variation */
+    LM_FLAG_EXERCISE = 1 << 12  /* the exercise clock is silent and runs on by itself */
 };
-enum { LM_FLAGS = 12 };
+enum { LM_FLAGS = 13 };
 
 /* The word of flag `number`, 0..LM_FLAGS - 1, which is the number of its bit: at most eight
  * characters, in static memory. */

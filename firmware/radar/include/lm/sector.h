@@ -71,12 +71,13 @@ struct lm_sector_command {
 
 /* State of a sector. lm_sector_start sets the command; the geometry is computed by lm_sector_begin.
  * The caller owns it. It may set environment, targets and chips after the start, and change
- * command.centre at an edge; all else is read-only to others. */
+ * is_shared and command.centre at an edge; all else is read-only to others. */
 struct lm_sector {
     const struct lm_radar *radar;             /* borrowed */
     const struct lm_environment *environment; /* borrowed; NULL: fair weather, sea state 3 */
     const struct lm_target_set *targets;      /* borrowed; NULL: none */
     struct lm_chips *chips; /* borrowed; NULL: every signature is drawn as a point, as in NORM */
+    bool is_shared; /* other displays draw the same: no sweep depends on heights of earlier ones */
     struct lm_sector_command command;
 
     bool is_begun; /* true if the geometry below is that of the running sweep */
@@ -124,7 +125,8 @@ struct lm_sector {
     uint32_t foreground_part;            /* part of the sector that it was traced in */
     bool has_foreground;                 /* true once it was traced */
 
-    uint32_t samples;                   /* taken since the start; only grows */
+    uint32_t samples; /* number of the next one: those taken since the start, or if is_shared by
+                         sweep and azimuth; changes with each */
     uint32_t power_q24[LM_CELLS_ROOM];  /* line drawn last, behind beam, pulse and speckle */
     int32_t level_db_q8[LM_CELLS_ROOM]; /* line drawn last, behind the receiver */
 };
@@ -156,6 +158,18 @@ static inline bool lm_sector_is_window(const struct lm_sector *s)
  * open. Cost: about 200 k instructions if height or window have changed, 30 k otherwise. */
 void lm_sector_begin(struct lm_sector *s, struct lm_tile_cache *tiles,
                      const struct lm_platform *platform);
+
+/* Sweep that a display joins which did not draw the one before it. */
+struct lm_sector_turn {
+    uint32_t sweep;   /* its number: odd ones go to the left */
+    uint32_t skipped; /* lines of it that are over already, below s->lines */
+    uint64_t time_us; /* movers are where they are at this time */
+};
+
+/* Make the sweep that has just begun that of `turn`. All that is drawn from its second line-to-be
+ * on depends on `turn`, the platform and what it finds in the map; but for samples that it shares
+ * with the sweep before it, if that one was drawn. */
+void lm_sector_join(struct lm_sector *s, const struct lm_sector_turn *turn);
 
 /* Time between two lines. Valid after lm_sector_begin. */
 uint32_t lm_sector_line_us(const struct lm_sector *s);

@@ -25,6 +25,7 @@
 #include "lm/coverage.h"
 #include "lm/cursor.h"
 #include "lm/environment.h"
+#include "lm/exercise.h"
 #include "lm/nav.h"
 #include "lm/overlay.h"
 #include "lm/page.h"
@@ -41,7 +42,7 @@ struct lm_picture_lent {
     struct lm_page
         *page; /* the operator's selection; is told of the picture's kind and the beam's tilt */
     struct lm_cursor *cursor; /* centre of windows and patches; is located again in a new view */
-    uint32_t noise_seed;
+    const struct lm_exercise *exercise; /* its clock and its seed */
     struct lm_glass_options options;
 };
 
@@ -52,6 +53,9 @@ struct lm_picture {
     bool is_cursor_awaited; /* a window is selected, but swept as NORM until the cursor is placed */
     bool is_recentred; /* the window's next sweep has its centre; its geometry is still the old one
                         */
+    struct {
+        uint64_t begun_us, period_us; /* by the exercise clock; period 0: by the unit's */
+    } turn;                           /* the running sweep's place in the exercise */
 
     struct lm_sar sar;
     struct lm_patch_painter painter;

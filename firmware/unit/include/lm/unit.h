@@ -36,6 +36,7 @@
 #include "lm/composer.h"
 #include "lm/controls.h"
 #include "lm/cursor.h"
+#include "lm/exercise.h"
 #include "lm/fault_log.h"
 #include "lm/keys.h"
 #include "lm/nav.h"
@@ -66,7 +67,8 @@ struct lm_board {
     uint8_t *plane;         /* one byte for each pixel of the display */
     uint32_t glass_step_px; /* pixels that a step without lines composes, 4,096 or more;
                                0: no limit */
-    uint32_t noise_seed;    /* chooses the draws of speckle and noise, and nothing else */
+    uint32_t noise_seed;    /* chooses the draws of speckle and noise, and nothing else; the seed
+                               of the exercise replaces it */
     struct lm_glass_options options;
     uint32_t flash_poll_limit; /* polls after which a read at the start is given up */
     const char *restart;       /* cause of the board's restart, at most 20 capitals; NULL: power was
@@ -102,6 +104,7 @@ struct lm_unit {
     } position_seen;
     struct lm_ownship ownship; /* extrapolated to the last step */
     struct lm_unit_weather weather;
+    struct lm_exercise exercise;
 
     struct lm_unit_map map;
     struct {
@@ -158,7 +161,8 @@ int lm_unit_init(struct lm_unit *u, const struct lm_board *board);
 
 /* Do what is due at `now_us`: microseconds since the start, never less than in the call before. In
  * this order:
- * - take at most LM_STEP_FRAMES frames from the bus, and extrapolate the ownship to now;
+ * - take at most LM_STEP_FRAMES frames from the bus, and extrapolate ownship and exercise clock to
+ *   now;
  * - take at most 8 controls of the bus, and 8 of the board;
  * - update the flags, and remove the picture if navigation or the image is lost;
  * - move view and cursor, and the range scale if it follows the cursor;

@@ -43,6 +43,9 @@ enum canas_id {
     CANAS_RAIN_LATITUDE = 1800,    /* and 3 more: of the display's own, docs/bus.md, "Weather" */
     CANAS_JAMMER_LATITUDE = 1804,  /* and 2 more */
     CANAS_WEATHER_CLEAR = 1807,
+    CANAS_EXERCISE_TIME = 1820, /* likewise, "Exercise clock" */
+    CANAS_EXERCISE_RATE = 1821,
+    CANAS_EXERCISE_SEED = 1822,
     CANAS_ID_COUNT = 2048
 };
 

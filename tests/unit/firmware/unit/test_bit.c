@@ -43,6 +43,7 @@ TEST(row_now_names_each_standing_fault)
         {LM_FLAG_SILENT, "NOW  NO RAD"},
         {LM_FLAG_UNABLE, "NOW  UNABLE"},
         {LM_FLAG_WEATHER, "NOW  WX"},
+        {LM_FLAG_EXERCISE, "NOW  EXC"},
         {LM_FLAG_NAV_DEAD | LM_FLAG_BUS | LM_FLAG_WEATHER, "NOW  NAV FAIL  BUS  WX"},
     };
     struct rig *r = start_rig();

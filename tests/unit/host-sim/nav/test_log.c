@@ -203,6 +203,44 @@ TEST(weather_is_told_once_a_second_in_whole_sets)
     }
 }
 
+/* From 100 s on, twice as fast from 3 s, standing from 7.3 s: each time is that of its frame. */
+TEST(the_exercise_clock_is_told_once_a_second_and_when_its_rate_changes)
+{
+    const double rates[][2] = {{2, 3}, {0, 7.3}};
+    for (double scale = 0.25; scale <= 4; scale *= 4) {
+        struct flight f;
+        make_flight(&f);
+        struct nav_send_options options = usual;
+        options.rate_scale = scale;
+        options.exercise.has_clock = options.exercise.has_seed = true;
+        options.exercise.start_s = 100;
+        options.exercise.seed = 4711;
+        assert_true(nav_exercise_add_rate(&options.exercise, rates[0], 2));
+        assert_false(nav_exercise_add_rate(&options.exercise, rates[0], 2)); /* not after it */
+        assert_true(nav_exercise_add_rate(&options.exercise, rates[1], 2));
+        send_track(&f, &options);
+        assert_in_range(count_id(&f.log, 1820), 20, 22);
+        assert_int_equal(count_id(&f.log, 1821), count_id(&f.log, 1820));
+        assert_int_equal(count_id(&f.log, 1822), count_id(&f.log, 1820));
+        const double first_s = (double)f.track.fix[0].time_us * 1e-6;
+        for (int i = 0; i < f.log.count; i++) {
+            const struct decoded_frame *x = &f.log.frame[i];
+            if (x->id == 1820) {
+                const double t = (double)x->time_us * 1e-6 - first_s;
+                const double wanted = t < 3 ? 100 + t : t < 7.3 ? 103 + 2 * (t - 3) : 111.6;
+                const int32_t ms =
+                    x->data[4] << 24 | x->data[5] << 16 | x->data[6] << 8 | x->data[7];
+                assert_true(fabs(ms - wanted * 1000) < 1.5);
+                double rate;
+                assert_true(decode_float(x - 2, &rate)); /* rate, seed, time */
+                assert_true(rate == (t < 3 ? 1 : t < 7.3 ? 2 : 0));
+                assert_int_equal(x[-1].data[6] << 8 | x[-1].data[7], 4711);
+            }
+        }
+        forget(&f);
+    }
+}
+
 TEST(weather_out_of_range_is_not_taken)
 {
     static const double bad[][6] = {

@@ -1,0 +1,358 @@
+/* Displays that hear one exercise clock show the same picture, whenever they were started. */
+#include "bus_frames.h"
+#include "check.h"
+#include "glass_text.h"
+#include "hs/angle.h"
+#include "unit_rig.h"
+
+#include "fx/crc32c.h"
+
+#include <math.h>
+#include <string.h>
+
+enum { S = 1000000, TELL_US = S };
+
+/* The exercise as the bus tells it: one for all displays. */
+struct exercise {
+    uint64_t start_us;            /* of the clock, 0 before */
+    uint64_t freeze_us, go_on_us; /* it stands between these two */
+    uint64_t silent_us;           /* nothing is told from then on */
+    double rate;
+    int32_t seed;
+};
+
+/* A display that was switched on at on_us of the world. */
+struct display {
+    struct rig *r;
+    struct lm_can can;
+    const struct exercise *exercise;
+    uint64_t on_us, world_us, told_us;
+    uint32_t part; /* next frame of the exercise to tell */
+    bool is_half;  /* the second half of a latitude is next */
+    uint8_t code;
+};
+
+static double clock_ms(const struct exercise *x, uint64_t world_us)
+{
+    const double from = (double)x->start_us;
+    double t = (double)world_us;
+    if (t > (double)x->freeze_us) {
+        t = fmax((double)x->freeze_us, t - (double)(x->go_on_us - x->freeze_us));
+    }
+    return 50000 + (t - from) * x->rate / 1000;
+}
+
+/* The rig's latitude as a DOUBLE. Of coarser positions a display keeps a past: docs/bus.md. */
+static struct lm_can_frame half_latitude(struct display *d, bool is_low, uint64_t time_us)
+{
+    const struct fake_bus *b = &d->r->bus;
+    const uint64_t bits =
+        bus_double_bits(45.95 + b->speed_m_s * (double)b->now_us / 1e6 / 111132.0);
+    d->is_half = !is_low;
+    return bus_frame(1036, is_low ? LM_CANAS_DOUBLEL : LM_CANAS_DOUBLEH, d->code++,
+                     (uint32_t)(is_low ? bits : bits >> 32), time_us);
+}
+
+static int hear(void *ctx, struct lm_can_frame *frame)
+{
+    struct display *d = ctx;
+    const struct exercise *x = d->exercise;
+    const uint64_t second_us = d->world_us / TELL_US * TELL_US;
+    if (second_us >= x->start_us && second_us < x->silent_us && d->told_us != second_us) {
+        const bool stands = second_us >= x->freeze_us && second_us < x->go_on_us;
+        const uint32_t words[] = {(uint32_t)(int32_t)lround(clock_ms(x, second_us)),
+                                  bus_float_bits(stands ? 0 : x->rate), (uint32_t)x->seed};
+        *frame = bus_frame(1820 + d->part, d->part == 1 ? LM_CANAS_FLOAT : LM_CANAS_LONG, 0,
+                           words[d->part], second_us - d->on_us);
+        frame->time_us = d->world_us - d->on_us;
+        d->part = (d->part + 1) % 3;
+        d->told_us = d->part == 0 ? second_us : d->told_us;
+        return 1;
+    }
+    if (d->is_half) {
+        *frame = half_latitude(d, true, d->world_us - d->on_us);
+        return 1;
+    }
+    const int status = d->r->board.can.receive(d->r, frame);
+    frame->time_us -= d->on_us;
+    if (status == 1 && frame->id == 1036) {
+        *frame = half_latitude(d, false, frame->time_us);
+    }
+    return status;
+}
+
+/* Two ships on their legs, and two points that fluctuate from scan to scan and pulse to pulse. */
+static void add_targets(struct lm_unit *u)
+{
+    static const double places[][2] = {
+        {46.02, 11.02}, {46.03, 10.98}, {46.05, 11.0}, {46.04, 11.03}};
+    for (uint32_t i = 0; i < 4; i++) {
+        u->map.targets[i] = (struct lm_target){.id = 40 + i,
+                                               .latitude = hs_bam(places[i][0]),
+                                               .longitude = hs_bam(places[i][1]),
+                                               .elevation_m_q6 = 100 * 64,
+                                               .swerling = (uint8_t)i,
+                                               .mean_rcs_dbsm_q8 = 40 * 256,
+                                               .speed_mm_s = i < 2 ? 30000 : 0,
+                                               .leg_m = i < 2 ? 4000 : 0};
+    }
+    u->map.target_set.items = u->map.targets;
+    u->map.target_set.count = 4;
+}
+
+static struct display switch_on(const struct exercise *x, double on_s, uint32_t board_seed)
+{
+    struct display d = {.r = make_rig(), .exercise = x, .on_us = (uint64_t)(on_s * S)};
+    d.world_us = d.on_us;
+    d.r->bus.sent_us = (d.on_us + 49999) / 50000 * 50000; /* on the grid of the others */
+    d.r->board.lent.noise_seed = board_seed;
+    return d;
+}
+
+/* Once the display is where it stays in memory. */
+static void begin(struct display *d)
+{
+    d->can = (struct lm_can){.ctx = d, .receive = hear};
+    d->r->board.lent.can = &d->can;
+    assert_int_equal(lm_unit_init(&d->r->unit, &d->r->board.lent), LM_OK);
+    add_targets(&d->r->unit);
+}
+
+static void fly(struct display *d, double until_s)
+{
+    for (; d->world_us < (uint64_t)(until_s * S); d->world_us += STEP_US) {
+        d->r->bus.now_us = d->world_us;
+        lm_unit_step(&d->r->unit, d->world_us - d->on_us);
+    }
+}
+
+static uint32_t pixels_apart(const struct display *a, const struct display *b)
+{
+    uint32_t apart = 0;
+    for (size_t i = 0; i < sizeof a->r->plane; i++) {
+        apart += a->r->plane[i] != b->r->plane[i];
+    }
+    return apart;
+}
+
+static void assert_same(const struct display *a, const struct display *b)
+{
+    assert_int_equal(pixels_apart(a, b), 0);
+    assert_true(lit_pixels(a->r) > 100);
+}
+
+static const struct exercise plain = {.start_us = 2 * S,
+                                      .freeze_us = UINT64_MAX,
+                                      .go_on_us = UINT64_MAX,
+                                      .silent_us = UINT64_MAX,
+                                      .rate = 1,
+                                      .seed = 1234};
+
+/* A pair: the second display is switched on later, or restarted, and has another seed. */
+struct pair {
+    struct display a, b;
+};
+
+static void command_both(struct pair *p, struct lm_control control)
+{
+    command(p->a.r, control);
+    command(p->b.r, control);
+}
+
+static void fly_both(struct pair *p, double until_s)
+{
+    fly(&p->a, until_s);
+    fly(&p->b, until_s);
+}
+
+static void begin_pair(struct pair *p, const struct exercise *x, double late_s)
+{
+    p->a = switch_on(x, 0, 1);
+    p->b = switch_on(x, late_s, 2);
+    begin(&p->a);
+    begin(&p->b);
+    command_both(p, range_10);
+}
+
+static void end_pair(struct pair *p)
+{
+    free_rig(p->a.r);
+    free_rig(p->b.r);
+}
+
+static struct lm_control sector(enum lm_sector_mode mode, enum lm_fov fov)
+{
+    return (struct lm_control){.kind = LM_CONTROL_SECTOR, .sector = {(uint8_t)mode, (uint8_t)fov}};
+}
+
+static const struct lm_control cursor_ahead = {
+    .kind = LM_CONTROL_CURSOR,
+    .cursor = {FX_BAM_DEG(46) + FX_BAM_DEG(3) / 100, FX_BAM_DEG(221) / 20}};
+
+/* Compare at several places of a sweep. */
+static void fly_and_compare(struct pair *p, double from_s)
+{
+    for (int i = 0; i < 4; i++) {
+        fly_both(p, from_s + i * 1.234);
+        assert_same(&p->a, &p->b);
+    }
+}
+
+TEST(displays_started_at_different_times_paint_the_same_from_the_second_sweep_on)
+{
+    for (int mode = 0; mode < LM_SECTOR_MODES; mode++) {
+        struct pair p;
+        begin_pair(&p, &plain, 3.33);
+        command_both(&p, sector((enum lm_sector_mode)mode, LM_FOV_NORM));
+        fly_both(&p, 3.4);
+        fly_and_compare(&p,
+                        5.4 + 2 * 2.01); /* its sweep of 2 s under way, a part of one, and one */
+        assert_int_equal(p.a.r->unit.count.lines_dropped, 0);
+        end_pair(&p);
+    }
+}
+
+TEST(and_without_a_clock_they_do_not)
+{
+    struct exercise none = plain;
+    none.start_us = UINT64_MAX;
+    struct pair p;
+    begin_pair(&p, &none, 3.33);
+    fly_both(&p, 12);
+    assert_true(pixels_apart(&p.a, &p.b) > 1000);
+    end_pair(&p);
+}
+
+/* Their sweeps take different times: the windows meet on a grid. */
+TEST(windows_meet_too)
+{
+    static const enum lm_fov fields[] = {LM_FOV_EXP, LM_FOV_DBS1};
+    for (int i = 0; i < 2; i++) {
+        struct pair p;
+        begin_pair(&p, &plain, 3.33);
+        command_both(&p, sector(LM_SECTOR_GM, LM_FOV_NORM));
+        fly_both(&p, 4);
+        command_both(&p, cursor_ahead);
+        command_both(&p, sector(LM_SECTOR_GM, fields[i]));
+        fly_both(&p, 4);
+        fly_both(&p, 16);
+        fly_and_compare(&p, 16);
+        assert_true(lm_sector_is_window(&p.b.r->unit.picture.sector));
+        end_pair(&p);
+    }
+}
+
+/* Heights differ by less than what computes the ranges anew, when a display remembers an old one.
+ */
+TEST(a_climb_leaves_no_trace_of_the_past)
+{
+    struct pair p;
+    begin_pair(&p, &plain, 3.33);
+    for (double t = 3.4; t < 20; t += 0.1) {
+        p.a.r->bus.height_m = p.b.r->bus.height_m = 2000 + 3 * t;
+        fly_both(&p, t);
+    }
+    fly_and_compare(&p, 20.1);
+    end_pair(&p);
+}
+
+/* 20 s of standing: two looks at it differ in nothing, although the aircraft's clock goes on. */
+TEST(an_exercise_that_stands_is_painted_over_and_over)
+{
+    struct exercise x = plain;
+    x.freeze_us = 10 * S;
+    x.go_on_us = 30 * S;
+    struct pair p;
+    begin_pair(&p, &x, 13.33); /* the second one is switched on while it stands */
+    p.a.r->bus.speed_m_s = p.b.r->bus.speed_m_s = 0; /* the aircraft stands as well */
+    fly_and_compare(&p, 18.5);
+    const uint32_t sum = plane_sum(p.a.r), lines = p.a.r->unit.count.lines;
+    assert_int_equal(p.a.r->unit.exercise.time_us, 58ull * S);
+    fly_both(&p, 24.5);
+    assert_int_equal(plane_sum(p.a.r), sum);
+    assert_true(p.a.r->unit.count.lines > lines + 400);
+    static const struct lm_control wider = {.kind = LM_CONTROL_RANGE, .range_nm = 20};
+    command_both(&p, wider); /* keys work */
+    fly_both(&p, 29);
+    assert_same(&p.a, &p.b);
+    fly_and_compare(&p, 35);
+    assert_int_not_equal(plane_sum(p.a.r), sum);
+    end_pair(&p);
+}
+
+TEST(twice_as_fast_and_half_as_fast_they_agree)
+{
+    static const double rates[] = {2, 0.5, 16};
+    for (int i = 0; i < 3; i++) {
+        struct exercise x = plain;
+        x.rate = rates[i];
+        struct pair p;
+        begin_pair(&p, &x, 3.33);
+        fly_and_compare(&p, 10);
+        /* The antenna turns no faster. */
+        assert_in_range(p.a.r->unit.count.lines, 9 * 256, 15 * 256);
+        end_pair(&p);
+    }
+}
+
+/* The clock steps by an hour and a bit, in the middle of a sweep. */
+TEST(after_a_step_of_the_clock_they_agree_again)
+{
+    struct exercise x = plain;
+    struct pair p;
+    begin_pair(&p, &x, 3.33);
+    fly_both(&p, 10.8);
+    x.start_us -= S / 2;
+    x.rate = 1.0625; /* by a fifth of a second a second: 500 ms and more */
+    fly_and_compare(&p, 18);
+    assert_true(p.a.r->unit.exercise.count.steps > 0);
+    end_pair(&p);
+}
+
+/* Where a ship of 30 m/s is painted, by the law of its leg, at the time of the sweep. */
+TEST(movers_are_where_the_exercise_has_them)
+{
+    struct pair p;
+    begin_pair(&p, &plain, 3.33);
+    fly_both(&p, 12);
+    const struct lm_sector *s = &p.a.r->unit.picture.sector;
+    const uint64_t sweep = s->sweep - 1234, period = p.a.r->unit.picture.turn.period_us;
+    assert_int_equal(s->platform.time_us, sweep * period);
+    assert_in_range(p.a.r->unit.exercise.time_us - s->platform.time_us, 0, 2 * S + 8000);
+    assert_int_equal(p.a.r->unit.exercise.time_us, 60ull * S - 2000);
+    assert_int_equal(s->is_leftward, s->sweep % 2);
+    end_pair(&p);
+}
+
+/* A patch asked for at one moment: movers and speckle are those of the exercise. */
+TEST(patches_agree)
+{
+    struct pair p;
+    begin_pair(&p, &plain, 3.33);
+    fly_both(&p, 6);
+    command_both(&p, patch_here);
+    fly_both(&p, 6.1);
+    assert_int_equal(p.a.r->unit.picture.sar.time_us, p.b.r->unit.picture.sar.time_us);
+    assert_in_range(p.a.r->unit.picture.sar.time_us, 54ull * S - 10000, 54ull * S + 10000);
+    fly_both(&p, 30);
+    assert_same(&p.a, &p.b);
+    end_pair(&p);
+}
+
+TEST(silence_is_said_on_the_glass_and_nothing_jumps)
+{
+    struct exercise x = plain;
+    x.silent_us = 10 * S;
+    struct pair p;
+    begin_pair(&p, &x, 3.33);
+    fly_both(&p, 11.5);
+    assert_false(p.a.r->unit.flags & LM_FLAG_EXERCISE);
+    fly_both(&p, 12.5);
+    assert_true(p.a.r->unit.flags & LM_FLAG_EXERCISE);
+    const struct lm_surface glass = glass_of(p.a.r);
+    const struct lm_palette *palette = &p.a.r->unit.palette;
+    assert_true(glass_find(&glass, "EXC", palette->warning, palette->ink, NULL));
+    assert_int_equal(lm_fault_log_at(&p.a.r->unit.faults, 0)->flag, 12);
+    fly_and_compare(&p, 30); /* both run on by their own clocks, which agree here */
+    end_pair(&p);
+}
