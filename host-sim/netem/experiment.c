@@ -44,6 +44,13 @@ static int make_training(struct nm_experiment *e)
     return e->training ? 0 : hs_error("training", NULL, "out of memory");
 }
 
+static struct nm_materials materials_of(const struct scene *s)
+{
+    struct nm_materials m = {.count = s->material_count};
+    memcpy(m.names, s->materials, sizeof m.names);
+    return m;
+}
+
 static int begin(struct nm_experiment *e, const char *path)
 {
     double kernel[NM_LARGE * NM_LARGE];
@@ -54,16 +61,23 @@ static int begin(struct nm_experiment *e, const char *path)
                         "is here from another training");
     }
     nm_settings_kernel(&e->settings, kernel);
-    return nm_settings_plan(&e->settings, &plan, &architecture) == 0 && make_training(e) == 0
-               ? nm_training_open(e->training, &plan, architecture, kernel,
-                                  (int)e->settings.setup.cells)
-               : -1;
+    if (nm_settings_plan(&e->settings, &plan, &architecture) != 0 || make_training(e) != 0 ||
+        nm_training_open(e->training, &plan, architecture, kernel, (int)e->settings.setup.cells) !=
+            0) {
+        return -1;
+    }
+    e->training->materials = materials_of(&e->view.scene);
+    return 0;
 }
 
 int nm_experiment_take(struct nm_experiment *e, const char *path)
 {
-    return make_training(e) == 0 ? nm_model_read(e->training, path, (int)e->settings.setup.cells)
-                                 : -1;
+    if (make_training(e) != 0 ||
+        nm_model_read(e->training, path, (int)e->settings.setup.cells) != 0) {
+        return -1;
+    }
+    e->view.known = &e->training->materials;
+    return 0;
 }
 
 static bool is_same_plan(const struct nm_plan *a, const struct nm_plan *b)
@@ -74,6 +88,16 @@ static bool is_same_plan(const struct nm_plan *a, const struct nm_plan *b)
            memcmp(a->epochs, b->epochs, sizeof a->epochs) == 0;
 }
 
+/* The chips were traced before: with the scene's numbers of materials. */
+static bool has_materials(const struct nm_training *t, const struct scene *s)
+{
+    bool is_same = t->materials.count == s->material_count;
+    for (uint32_t i = 0; is_same && i < s->material_count; i++) {
+        is_same = strcmp(t->materials.names[i], s->materials[i]) == 0;
+    }
+    return is_same;
+}
+
 static int go_on(struct nm_experiment *e, const char *path)
 {
     const struct nm_architecture *architecture;
@@ -81,6 +105,10 @@ static int go_on(struct nm_experiment *e, const char *path)
     if (nm_settings_plan(&e->settings, &plan, &architecture) != 0 ||
         nm_experiment_take(e, path) != 0) {
         return -1;
+    }
+    if (!has_materials(e->training, &e->view.scene)) {
+        return hs_error(path, "give the model of its beginning",
+                        "was begun with a model of other materials");
     }
     return architecture == e->training->model.architecture &&
                    is_same_plan(&plan, &e->training->plan)

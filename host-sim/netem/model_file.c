@@ -40,7 +40,11 @@ int nm_model_write(const struct nm_training *t, const char *path)
     }
     FILE *out = file.stream;
     const struct nm_model *m = &t->model;
-    fprintf(out, "landmass-netem 1\narchitecture %s\n", m->architecture->name);
+    fprintf(out, "landmass-netem 2\narchitecture %s\nmaterials", m->architecture->name);
+    for (uint32_t i = 0; i < t->materials.count; i++) {
+        fprintf(out, " %s", t->materials.names[i]);
+    }
+    fputc('\n', out);
     write_plan(out, &t->plan);
     fprintf(out, "random %" PRIx64 " %" PRIx64 " %" PRIx64 " %" PRIx64 "\n", t->rng.s[0],
             t->rng.s[1], t->rng.s[2], t->rng.s[3]);
@@ -139,6 +143,31 @@ static int read_seed(struct db_text_file *f, uint64_t *seed)
     return sscanf(text, "%" SCNu64 "%n", seed, &used) == 1 && text[used] == '\0'
                ? 0
                : db_text_error(f, remedy, "`seed` must be a whole number");
+}
+
+/* Printable names with a blank before each, none of them twice. */
+static int read_materials(struct db_text_file *f, struct nm_materials *m)
+{
+    const char *text = "";
+    if (next_value(f, "materials", &text) != 0) {
+        return -1;
+    }
+    for (m->count = 0; *text != '\0'; m->count++) {
+        const size_t length = strcspn(text + 1, " ");
+        if (length == 0 || length >= TRACE_NAME_SIZE || m->count == TRACE_MATERIALS_MAX) {
+            return db_text_error(f, remedy, "`materials` needs up to %d names of up to %d letters",
+                                 TRACE_MATERIALS_MAX, TRACE_NAME_SIZE - 1);
+        }
+        memcpy(m->names[m->count], text + 1, length);
+        m->names[m->count][length] = '\0';
+        for (uint32_t i = 0; i < m->count; i++) {
+            if (strcmp(m->names[i], m->names[m->count]) == 0) {
+                return db_text_error(f, remedy, "the material %s is there twice", m->names[i]);
+            }
+        }
+        text += 1 + length;
+    }
+    return 0;
 }
 
 static int read_plan(struct db_text_file *f, struct nm_plan *p)
@@ -259,31 +288,40 @@ static int read_state(struct db_text_file *f, struct nm_training *t)
 }
 
 static int read_head(struct db_text_file *f, const struct nm_architecture **architecture,
-                     struct nm_plan *plan)
+                     struct nm_materials *materials, struct nm_plan *plan)
 {
     int version;
     const char *name = "";
-    if (read_count(f, "landmass-netem", 1, 1, &version) != 0 ||
-        next_value(f, "architecture", &name) != 0) {
+    if (read_count(f, "landmass-netem", 1, 2, &version) != 0) {
+        return -1;
+    }
+    if (version < 2) {
+        return db_text_error(f, "train again", "a file without the names of its materials");
+    }
+    if (next_value(f, "architecture", &name) != 0) {
         return -1;
     }
     *architecture = *name == ' ' ? nm_architecture_find(name + 1) : NULL;
-    return *architecture ? read_plan(f, plan)
-                         : db_text_error(f, remedy, "there is no architecture `%s`", name);
+    if (!*architecture) {
+        return db_text_error(f, remedy, "there is no architecture `%s`", name);
+    }
+    return read_materials(f, materials) == 0 ? read_plan(f, plan) : -1;
 }
 
 int nm_model_read(struct nm_training *t, const char *path, int cells)
 {
     static const double no_kernel[NM_LARGE * NM_LARGE];
-    const struct nm_architecture *architecture;
+    const struct nm_architecture *architecture = NULL;
+    struct nm_materials materials = {.count = 0};
     struct nm_plan plan;
     struct db_text_file f;
     if (db_text_open(&f, path) != 0) {
         return -1;
     }
-    int result = read_head(&f, &architecture, &plan);
+    int result = read_head(&f, &architecture, &materials, &plan);
     result = result == 0 ? nm_training_open(t, &plan, architecture, no_kernel, cells) : result;
     if (result == 0) {
+        t->materials = materials;
         result = read_state(&f, t);
         if (result != 0) {
             nm_training_close(t);

@@ -82,6 +82,23 @@ static int features_make(struct nm_paths *p, enum nm_direction d)
     return 0;
 }
 
+int nm_materials_match(const struct nm_materials *known, const struct trace_records *records,
+                       uint8_t number[TRACE_MATERIALS_MAX])
+{
+    for (uint32_t i = 0; i < records->material_count; i++) {
+        uint32_t k = known ? 0 : i;
+        while (known && k < known->count && strcmp(known->names[k], records->materials[i]) != 0) {
+            k++;
+        }
+        if (known && k == known->count) {
+            return hs_error(records->materials[i], "train on a model that has it, or rename it",
+                            "a material of the model that the training does not know");
+        }
+        number[i] = (uint8_t)k;
+    }
+    return 0;
+}
+
 /* Where the records of the bounces stand while one ray after the other is followed. */
 struct cursor {
     const struct trace_records *records;
@@ -114,7 +131,8 @@ static int32_t cell_of(const struct trace_grid *grid, const struct trace_record 
 
 /* The ray's steps up to its last echo in the picture; returns their number. */
 static int take_ray(const struct trace_grid *grid, const struct trace_record *const *way, int count,
-                    struct table tables[NM_DIRECTIONS], struct nm_step *steps)
+                    const uint8_t *number, struct table tables[NM_DIRECTIONS],
+                    struct nm_step *steps)
 {
     while (count > 0 && cell_of(grid, way[count - 1]) < 0) {
         count--;
@@ -122,8 +140,9 @@ static int take_ray(const struct trace_grid *grid, const struct trace_record *co
     for (int b = 0; b < count; b++) {
         const double incidence = (double)way[b]->incidence_rad;
         const struct nm_reflection bk = {incidence, (double)way[b]->echo_rad,
-                                         (double)way[b]->turn_rad, way[b]->material};
-        const struct nm_reflection sp = {incidence, incidence, 2 * incidence, way[b]->material};
+                                         (double)way[b]->turn_rad, number[way[b]->material]};
+        const struct nm_reflection sp = {incidence, incidence, 2 * incidence,
+                                         number[way[b]->material]};
         steps[b] = (struct nm_step){.cell = cell_of(grid, way[b])};
         steps[b].row[NM_BK] = table_find(&tables[NM_BK], &bk);
         steps[b].row[NM_SP] = b + 1 < count ? table_find(&tables[NM_SP], &sp) : -1;
@@ -132,13 +151,13 @@ static int take_ray(const struct trace_grid *grid, const struct trace_record *co
 }
 
 static void take_rays(struct nm_paths *p, const struct trace_records *records,
-                      struct table tables[NM_DIRECTIONS])
+                      const uint8_t *number, struct table tables[NM_DIRECTIONS])
 {
     struct cursor cursor = {records, {0}};
     const struct trace_record *way[TRACE_BOUNCES_MAX];
     int32_t used = 0;
     for (int count; (count = next_ray(&cursor, way)) > 0;) {
-        count = take_ray(&records->grid, way, count, tables, p->steps + used);
+        count = take_ray(&records->grid, way, count, number, tables, p->steps + used);
         if (count > 0) {
             p->first[p->ray_count++] = used;
             used += count;
@@ -147,9 +166,15 @@ static void take_rays(struct nm_paths *p, const struct trace_records *records,
     p->first[p->ray_count] = used;
 }
 
-int nm_paths_build(struct nm_paths *p, const struct trace_records *records)
+int nm_paths_build(struct nm_paths *p, const struct trace_records *records,
+                   const struct nm_materials *known)
 {
+    uint8_t number[TRACE_MATERIALS_MAX];
     uint32_t total = 0;
+    *p = (struct nm_paths){0};
+    if (nm_materials_match(known, records, number) != 0) {
+        return -1;
+    }
     for (uint32_t b = 0; b < records->bounce_count; b++) {
         total += records->bounces[b].count;
     }
@@ -168,7 +193,7 @@ int nm_paths_build(struct nm_paths *p, const struct trace_records *records)
         result = table_open(&tables[d], total + 1);
     }
     if (result == 0) {
-        take_rays(p, records, tables);
+        take_rays(p, records, number, tables);
     }
     for (int d = 0; d < NM_DIRECTIONS; d++) {
         p->table[d] = tables[d].rows;

@@ -25,6 +25,23 @@ void nm_target_view_close(struct nm_target_view *v)
     scene_close(&v->scene);
 }
 
+/* The law by the numbers that the paths have. */
+static int take_law(const struct nm_target_view *v, const struct trace_records *records,
+                    struct reflect_law *law)
+{
+    struct reflect_law by_record;
+    uint8_t number[TRACE_MATERIALS_MAX];
+    if (setup_law(&v->setup, records, &by_record) != 0 ||
+        nm_materials_match(v->known, records, number) != 0) {
+        return -1;
+    }
+    *law = by_record;
+    for (uint32_t i = 0; i < records->material_count; i++) {
+        law->materials[number[i]] = by_record.materials[i];
+    }
+    return 0;
+}
+
 int nm_target_view_paths(const struct nm_target_view *v, double azimuth_deg, double depression_deg,
                          struct nm_paths *paths, struct reflect_law *law)
 {
@@ -34,8 +51,8 @@ int nm_target_view_paths(const struct nm_target_view *v, double azimuth_deg, dou
     if (trace_run(&v->scene, &order, v->setup.model, &records, NULL) != 0) {
         return -1;
     }
-    int result = law ? setup_law(&v->setup, &records, law) : 0;
-    result = result == 0 ? nm_paths_build(paths, &records) : -1;
+    int result = law ? take_law(v, &records, law) : 0;
+    result = result == 0 ? nm_paths_build(paths, &records, v->known) : -1;
     trace_records_free(&records);
     return result;
 }

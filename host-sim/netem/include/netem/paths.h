@@ -46,9 +46,23 @@ struct nm_paths {
     struct nm_step *steps; /* owned: those of a ray follow one another */
 };
 
-/* Builds the paths of checked records. Rays that leave no echo in the picture are left out. Returns
- * 0, or -1 with the error reported (out of memory). */
-int nm_paths_build(struct nm_paths *paths, const struct trace_records *records);
+/* Names of materials, in the order in which the networks know them as numbers. */
+struct nm_materials {
+    uint32_t count;
+    char names[TRACE_MATERIALS_MAX][TRACE_NAME_SIZE];
+};
+
+/* The number in `known` of each material of the records, by name. Returns 0, or -1 with the error
+ * reported when `known` lacks one. NULL for `known` keeps the records'
+ * own numbers. */
+int nm_materials_match(const struct nm_materials *known, const struct trace_records *records,
+                       uint8_t number[TRACE_MATERIALS_MAX]);
+
+/* Builds the paths of checked records, whose materials get their numbers from `known`, or keep
+ * their own if that is NULL. Rays that leave no echo in the picture are left out. Returns 0, or -1
+ * with the error reported: a material that `known` lacks, or out of memory. */
+int nm_paths_build(struct nm_paths *paths, const struct trace_records *records,
+                   const struct nm_materials *known);
 void nm_paths_free(struct nm_paths *paths);
 
 /* The inputs of a network for one reflection, each within -1..1 for materials 0..2. */

@@ -9,6 +9,8 @@
 struct nm_target_view {
     struct setup setup; /* borrows what the command line lent it */
     struct scene scene; /* owned */
+    const struct nm_materials
+        *known; /* borrowed: those of a training; NULL: as the scene has them */
 };
 
 /* The model on its ground; `lowest_depression_deg` is the flattest look that will be asked for.
@@ -17,8 +19,9 @@ int nm_target_view_open(struct nm_target_view *v, const struct setup *setup,
                         double lowest_depression_deg);
 void nm_target_view_close(struct nm_target_view *v);
 
-/* Trace from an aspect. `law`, if not NULL, receives the law of the set-up for these materials.
- * Returns 0, or -1 with the error reported and nothing to free. */
+/* Trace from an aspect. `law`, if not NULL, receives the law of the set-up for these materials, by
+ * the numbers of v->known. Returns 0, or -1 with the error reported and nothing to free: also when
+ * a material is not known. */
 int nm_target_view_paths(const struct nm_target_view *v, double azimuth_deg, double depression_deg,
                          struct nm_paths *paths, struct reflect_law *law);
 

@@ -52,6 +52,7 @@ struct nm_epoch {
 
 struct nm_training {
     struct nm_plan plan;
+    struct nm_materials materials; /* that the networks know; none until the caller says */
     struct nm_model model;
     struct nm_optimizer optimizer;
     struct hs_rng rng;

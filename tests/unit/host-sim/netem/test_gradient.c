@@ -33,7 +33,7 @@ static void open_bench(struct bench *b, const struct nm_architecture *architectu
         kernel[i] = 0.3 * exp(-(x * x + 2 * y * y + x) / 6);
     }
     facets_make(&b->records, 5, SIDE, CELLS);
-    assert_int_equal(nm_paths_build(&b->paths, &b->records), 0);
+    assert_int_equal(nm_paths_build(&b->paths, &b->records, NULL), 0);
     assert_int_equal(nm_model_open(&b->model, architecture, kernel, &rng), 0);
     assert_int_equal(nm_simulator_open(&b->simulator, architecture, CELLS), 0);
     assert_int_equal(nm_picture_open(&b->real, SIDE + 3, SIDE + 1), 0);

@@ -70,7 +70,7 @@ static void make_chip(struct world *w, struct nm_sample *s, uint64_t aspect, int
     struct nm_simulator *simulator = &w->training->simulator;
     *s = (struct nm_sample){0};
     facets_make(&records, 100 + aspect, RAYS, CELLS);
-    assert_int_equal(nm_paths_build(&s->paths, &records), 0);
+    assert_int_equal(nm_paths_build(&s->paths, &records, NULL), 0);
     trace_records_free(&records);
     coefficients_of(&s->paths, plain_law, plain_law, values);
     s->own = malloc(sizeof far);

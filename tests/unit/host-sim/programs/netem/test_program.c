@@ -152,6 +152,53 @@ TEST(other_vehicles_are_scored_beside)
         0);
 }
 
+/* The tank has rubber, which a training on SLICY knows nothing of, and metal and ground at other
+ * numbers than the lorry's ground has. */
+TEST(materials_go_by_their_names)
+{
+    static const char *const commands[] = {
+        "simulate --cells 64 --rays 1 --out %s/named",
+        "score --cells 64 --rays 1 --chips %s/made/list --out %s/named",
+        "bake --rays 1 --aspects 3 --depressions 30 --out %s/named.sig"};
+    const char *b = support_build_dir();
+    for (size_t i = 0; i < sizeof commands / sizeof commands[0]; i++) {
+        char rest[512];
+        snprintf(rest, sizeof rest, commands[i], folder, folder);
+        assert_int_equal(support_run("%s/bin/landmass-netem %s --model tank --training "
+                                     "%s/whole/training.netem 2> %s/refused",
+                                     b, rest, folder, folder),
+                         1);
+        assert_int_equal(support_run("cat %s/refused && grep -q 'rubber: a material of the model "
+                                     "that the training does not know' %s/refused",
+                                     folder, folder),
+                         0);
+    }
+}
+
+/* A body of ground and one of metal, in files that name them in either order. */
+TEST(the_order_of_materials_in_a_model_changes_nothing)
+{
+    static const char *const names[] = {"metal ground", "ground metal"};
+    const char *b = support_build_dir();
+    for (int i = 0; i < 2; i++) {
+        assert_int_equal(
+            support_run("cd %s && : > %d.obj && n=0 && for m in %s; do y=1; [ $m = metal ] && "
+                        "y=-1; printf \"usemtl $m\\nv 0 $y 0.1\\nv 0 $((y + 1)) 0.1\\nv 0 $y "
+                        "1\\nv -1 $y 0.1\\nf $((n+1)) $((n+2)) $((n+3))\\nf $((n+1)) $((n+4)) "
+                        "$((n+2))\\nf $((n+1)) $((n+3)) $((n+4))\\nf $((n+2)) $((n+4)) "
+                        "$((n+3))\\n\" >> %d.obj; n=$((n+4)); done",
+                        folder, i, names[i], i),
+            0);
+        assert_int_equal(support_run("%s/bin/landmass-netem simulate --up z --model %s/%d.obj "
+                                     "--cells 64 --rays 1 --training %s/whole/training.netem "
+                                     "--azimuth 30 --out %s/order%d",
+                                     b, folder, i, folder, folder, i),
+                         0);
+    }
+    assert_int_equal(support_run("cmp %s/order0/030.00.csv %s/order1/030.00.csv", folder, folder),
+                     0);
+}
+
 TEST(what_was_learned_can_be_baked)
 {
     assert_int_equal(support_run("%s/bin/landmass-netem bake --model slicy --rays 1 --aspects 3 "
