@@ -1,5 +1,7 @@
 #include "lm/bus.h"
 
+#include <stddef.h>
+
 #include "lm/bus_bitfield.h"
 
 void lm_bus_init(struct lm_bus *b, const struct lm_bus_profile *profile)
@@ -30,21 +32,20 @@ static void add_row(struct lm_bus_event *event, const struct lm_bus_row *row)
     event->dead_ms = row->dead_ms;
 }
 
-/* Read a number for each row that takes the frame. */
-static uint32_t take_packed(struct lm_bus *b, const struct lm_can_frame *frame,
-                            struct lm_bus_event events[LM_BUS_EVENTS])
+/* Read a number for each row that takes the data; the first of these rows is `first`. */
+static uint32_t read_rows(struct lm_bus *b, const struct lm_can_frame *frame, uint32_t first,
+                          const struct lm_bus_payload *payload,
+                          struct lm_bus_event events[LM_BUS_EVENTS])
 {
     const struct lm_bus_profile *p = b->profile;
     uint32_t count = 0;
-    bool has_row = false;
-    for (uint32_t i = 0; i < p->row_count && count < LM_BUS_EVENTS; i++) {
+    for (uint32_t i = first; i < p->row_count && count < LM_BUS_EVENTS; i++) {
         if (!lm_bus_bitfield_is_row(&p->rows[i], frame)) {
             continue;
         }
-        has_row = true;
         enum lm_bus_outcome outcome = LM_BUS_NO_DATA;
         if ((frame->id & p->invalid_mask) == 0) {
-            outcome = lm_bus_bitfield_read(&p->rows[i], frame, &events[count]);
+            outcome = lm_bus_bitfield_read(&p->rows[i], payload, &events[count]);
         }
         b->count.outcome[outcome]++;
         if (outcome == LM_BUS_VALUE) {
@@ -55,8 +56,33 @@ static uint32_t take_packed(struct lm_bus *b, const struct lm_can_frame *frame,
             count++;
         }
     }
-    b->count.outcome[LM_BUS_UNUSED] += !has_row;
     return count;
+}
+
+/* A frame of fast packets is kept until its message is whole. All rows of a frame agree on what it
+ * is. */
+static uint32_t take_packed(struct lm_bus *b, const struct lm_can_frame *frame,
+                            struct lm_bus_event events[LM_BUS_EVENTS])
+{
+    const struct lm_bus_profile *p = b->profile;
+    struct lm_bus_payload payload = {frame->data, frame->length, frame->time_us};
+    uint32_t first = 0;
+    while (first < p->row_count && !lm_bus_bitfield_is_row(&p->rows[first], frame)) {
+        first++;
+    }
+    if (first == p->row_count || frame->length > 8) {
+        b->count.outcome[first == p->row_count ? LM_BUS_UNUSED : LM_BUS_BAD_LENGTH]++;
+        return 0;
+    }
+    if (p->rows[first].packing.is_fast) {
+        const struct lm_fast_packet_slot *whole = lm_fast_packet_take(&b->fast, frame);
+        if (whole == NULL) {
+            b->count.outcome[LM_BUS_HALF]++;
+            return 0;
+        }
+        payload = (struct lm_bus_payload){whole->data, whole->length, whole->begun_us};
+    }
+    return read_rows(b, frame, first, &payload, events);
 }
 
 uint32_t lm_bus_take(struct lm_bus *b, const struct lm_can_frame *frame,

@@ -2,27 +2,25 @@
 
 #include "fx/float_bits.h"
 
-/* The data as one number, byte 0 on top or at the bottom. Bytes past the frame's end count as 0. */
-static uint64_t payload(const struct lm_can_frame *frame, bool is_little_endian)
+/* Up to 64 bits as one number. Its bytes are the eight from that of the first bit on, the first of
+ * them on top or at the bottom; bytes past the end count as 0. The row's check says that the bits
+ * lie within. */
+static uint64_t extract(const struct lm_bus_payload *payload, struct lm_bus_bits bits,
+                        bool is_little_endian)
 {
+    const uint32_t start = bits.first / 8u, skipped = bits.first % 8u;
     uint64_t word = 0;
     for (uint32_t i = 0; i < 8; i++) {
-        const uint64_t byte = i < frame->length ? frame->data[i] : 0;
+        const uint64_t byte = start + i < payload->length ? payload->data[start + i] : 0;
         word |= byte << 8 * (is_little_endian ? i : 7 - i);
     }
-    return word;
-}
-
-/* 1..64 bits that end at or before bit 64. */
-static uint64_t extract(uint64_t word, struct lm_bus_bits bits, bool is_little_endian)
-{
-    const uint32_t below = is_little_endian ? bits.first : 64u - bits.first - bits.count;
+    const uint32_t below = is_little_endian ? skipped : 64u - skipped - bits.count;
     return word >> below & (UINT64_MAX >> (64 - bits.count));
 }
 
-static bool is_inside(struct lm_bus_bits bits, const struct lm_can_frame *frame)
+static bool is_inside(struct lm_bus_bits bits, const struct lm_bus_payload *payload)
 {
-    return bits.first + bits.count <= 8 * frame->length;
+    return (uint32_t)bits.first + bits.count <= 8 * payload->length;
 }
 
 /* The float as a number with the row's frac_bits. */
@@ -77,19 +75,18 @@ bool lm_bus_bitfield_is_row(const struct lm_bus_row *row, const struct lm_can_fr
 }
 
 enum lm_bus_outcome lm_bus_bitfield_read(const struct lm_bus_row *row,
-                                         const struct lm_can_frame *frame,
+                                         const struct lm_bus_payload *payload,
                                          struct lm_bus_event *event)
 {
     const struct lm_bus_packing *p = &row->packing;
     const enum lm_bus_field field = (enum lm_bus_field)row->field;
-    if (frame->length > 8 || !is_inside(p->bits, frame) || !is_inside(p->match, frame)) {
+    if (!is_inside(p->bits, payload) || !is_inside(p->match, payload)) {
         return LM_BUS_BAD_LENGTH;
     }
-    const uint64_t word = payload(frame, p->is_little_endian);
-    if (p->match.count != 0 && extract(word, p->match, p->is_little_endian) != p->match_value) {
+    if (p->match.count != 0 && extract(payload, p->match, p->is_little_endian) != p->match_value) {
         return LM_BUS_UNUSED;
     }
-    const uint64_t raw = extract(word, p->bits, p->is_little_endian);
+    const uint64_t raw = extract(payload, p->bits, p->is_little_endian);
     int64_t number;
     const enum lm_bus_outcome outcome = read_number(p, raw, &number);
     if (outcome != LM_BUS_VALUE) {
@@ -101,6 +98,6 @@ enum lm_bus_outcome lm_bus_bitfield_read(const struct lm_bus_row *row,
     }
     event->value = (int32_t)(uint32_t)value; /* an angle of 180 degrees or more wraps */
     event->step = step_of(p, raw);
-    event->time_us = frame->time_us;
+    event->time_us = payload->time_us;
     return LM_BUS_VALUE;
 }

@@ -5,6 +5,7 @@
 
 #include "lm/bus_event.h"
 #include "lm/canas.h"
+#include "lm/fast_packet.h"
 #include "lm/status.h"
 
 enum {
@@ -23,9 +24,11 @@ static bool are_ages_sound(const struct lm_bus_row *row)
            row->stale_ms < row->dead_ms && row->dead_ms <= dead_most_ms;
 }
 
-static bool is_run(struct lm_bus_bits bits, uint32_t room)
+/* Within the frame or message, and within 64 bits from its first byte on. */
+static bool is_run(struct lm_bus_bits bits, bool is_fast)
 {
-    return bits.count <= FRAME_BITS && (uint32_t)bits.first + bits.count <= room;
+    const uint32_t room = is_fast ? 8 * LM_FAST_PACKET_BYTES : FRAME_BITS;
+    return bits.first % 8u + bits.count <= FRAME_BITS && (uint32_t)bits.first + bits.count <= room;
 }
 
 static bool is_arithmetic_sound(const struct lm_bus_packing *p)
@@ -51,7 +54,7 @@ static bool is_packed_sound(const struct lm_bus_row *row)
     const struct lm_bus_packing *p = &row->packing;
     return !lm_bus_is_of_set((enum lm_bus_field)row->field) && p->mask != 0 &&
            p->mask <= LM_CAN_ID_EXTENDED && (row->id & ~p->mask) == 0 &&
-           is_run(p->bits, FRAME_BITS) && is_run(p->match, FRAME_BITS) && p->match.count <= 8 &&
+           is_run(p->bits, p->is_fast) && is_run(p->match, p->is_fast) && p->match.count <= 8 &&
            p->match_value >> p->match.count == 0 && is_number_sound(p) && is_arithmetic_sound(p);
 }
 
@@ -88,7 +91,11 @@ static bool has_no_rival(const struct lm_bus_profile *p, uint32_t index)
         if (!is_packed && other->id == row->id) {
             return false;
         }
-        in_frame += (other->id & common) == (row->id & common);
+        const bool is_same_frame = (other->id & common) == (row->id & common);
+        if (is_packed && is_same_frame && other->packing.is_fast != row->packing.is_fast) {
+            return false;
+        }
+        in_frame += is_same_frame;
     }
     return !is_packed || in_frame <= LM_BUS_EVENTS;
 }

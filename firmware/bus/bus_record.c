@@ -7,7 +7,7 @@
 #include "lm/status.h"
 
 enum { FIELD_NAME_BYTES = 24, AT_VERSION = 4 };
-enum { LITTLE_ENDIAN = 1, HAS_NONE = 2, FLAGS_KNOWN = 3 };
+enum { LITTLE_ENDIAN = 1, HAS_NONE = 2, IS_FAST = 4, FLAGS_KNOWN = 7 };
 enum { FRAMING_CANAEROSPACE, FRAMING_TYPES_ASSUMED, FRAMING_PACKED, FRAMINGS };
 
 /* Members are in an order that needs no padding. */
@@ -82,8 +82,9 @@ uint32_t lm_bus_pack(const struct lm_bus_profile *profile, uint8_t *record)
                           .match_value = p->match_value,
                           .priority = from->priority,
                           .type = p->type,
-                          .flags = (uint8_t)((p->is_little_endian ? LITTLE_ENDIAN : 0) |
-                                             (p->has_none ? HAS_NONE : 0)),
+                          .flags =
+                              (uint8_t)((p->is_little_endian ? LITTLE_ENDIAN : 0) |
+                                        (p->has_none ? HAS_NONE : 0) | (p->is_fast ? IS_FAST : 0)),
                           .shift = p->shift,
                           .frac_bits = p->frac_bits};
         copy_name(row.field, lm_bus_fields[from->field].name, sizeof row.field);
@@ -167,6 +168,7 @@ static int unpack_row(struct lm_bus_row *to, const uint8_t *record)
                                           .type = row.type,
                                           .is_little_endian = (row.flags & LITTLE_ENDIAN) != 0,
                                           .has_none = (row.flags & HAS_NONE) != 0,
+                                          .is_fast = (row.flags & IS_FAST) != 0,
                                           .none = row.none,
                                           .multiplier = row.multiplier,
                                           .shift = row.shift,

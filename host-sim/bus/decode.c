@@ -15,7 +15,7 @@
 
 static const char *const outcome_words[LM_BUS_OUTCOMES] = {
     [LM_BUS_VALUE] = "values",
-    [LM_BUS_HALF] = "half of a double",
+    [LM_BUS_HALF] = "part of a double or of a fast packet",
     [LM_BUS_NOT_DATA] = "no data frame",
     [LM_BUS_FOREIGN] = "foreign identifier",
     [LM_BUS_OTHER_CHANNEL] = "redundancy channel not used",
@@ -248,6 +248,11 @@ static void print_summary(const struct decoder *d, const struct drv_can_log *log
         fprintf(d->out, "# halves without a mate: %u; message codes out of sequence: %u\n",
                 d->bus.canas.count.torn_pairs, d->bus.canas.count.sequence_breaks);
     }
+    const struct lm_fast_packet *fast = &d->bus.fast;
+    if (fast->count.whole + fast->count.torn + fast->count.stray != 0) {
+        fprintf(d->out, "# fast packets: %u whole, %u torn; frames of none: %u\n",
+                fast->count.whole, fast->count.torn, fast->count.stray);
+    }
 }
 
 static void report(const struct decoder *d, const struct drv_can_log *log)
@@ -259,6 +264,11 @@ static void report(const struct decoder *d, const struct drv_can_log *log)
     }
     hs_report_put("torn_pairs", d->bus.canas.count.torn_pairs);
     hs_report_put("sequence_breaks", d->bus.canas.count.sequence_breaks);
+    hs_report_object("fast_packets");
+    hs_report_put("whole", d->bus.fast.count.whole);
+    hs_report_put("torn", d->bus.fast.count.torn);
+    hs_report_put("stray", d->bus.fast.count.stray);
+    hs_report_close();
 }
 
 /* 0 when that is not known: of a pipe. */

@@ -89,6 +89,9 @@ static void print_place(FILE *out, const struct lm_bus_row *row)
     if (offset_of(row) != 0) {
         fprintf(out, " %+.8g", offset_of(row));
     }
+    if (p->is_fast) {
+        fprintf(out, ", fast packet");
+    }
     if (p->match.count != 0) {
         fprintf(out, ", when %u+%u = %u", p->match.first, p->match.count, p->match_value);
     }
@@ -321,8 +324,17 @@ static bool are_one_frame(const struct lm_bus_row *a, const struct lm_bus_row *b
     return a->id == b->id && a->packing.mask == b->packing.mask;
 }
 
+/* A .dbc file has no word for fast packets: they are left out. */
+static bool is_in_dbc(const struct lm_bus_profile *profile, int index)
+{
+    return profile->framing != LM_BUS_PACKED || !profile->rows[index].packing.is_fast;
+}
+
 static bool is_first_of_frame(const struct lm_bus_profile *profile, int index)
 {
+    if (!is_in_dbc(profile, index)) {
+        return false;
+    }
     for (int i = 0; i < index; i++) {
         if (are_one_frame(&profile->rows[i], &profile->rows[index])) {
             return false;
@@ -446,7 +458,9 @@ void bus_print_dbc(FILE *out, const struct lm_bus_profile *profile)
     }
     fprintf(out, "\n");
     for (int i = 0; i < profile->row_count; i++) {
-        print_remarks(out, profile, i);
+        if (is_in_dbc(profile, i)) {
+            print_remarks(out, profile, i);
+        }
     }
     fprintf(out,
             "BA_DEF_ BO_ \"GenMsgCycleTime\" INT 0 65535;\n"
@@ -461,6 +475,8 @@ void bus_print_dbc(FILE *out, const struct lm_bus_profile *profile)
         print_values(out, &profile->rows[i]);
     }
     for (int i = 0; i < profile->row_count; i++) {
-        print_float(out, profile, i);
+        if (is_in_dbc(profile, i)) {
+            print_float(out, profile, i);
+        }
     }
 }

@@ -26,12 +26,12 @@ static void print_packing(FILE *out, const struct lm_bus_packing *p)
     fprintf(out,
             "        .packing = {.mask = 0x%08X, .bits = {%u, %u}, .match = {%u, %u}, "
             ".match_value = %u,\n"
-            "                    .type = %s, .is_little_endian = %s,\n"
+            "                    .type = %s, .is_little_endian = %s, .is_fast = %s,\n"
             "                    .has_none = %s, .none = 0x%X,\n"
             "                    .multiplier = %d, .shift = %u, .frac_bits = %u, .bias = %lld},\n",
             p->mask, p->bits.first, p->bits.count, p->match.first, p->match.count, p->match_value,
-            types[p->type], boolean(p->is_little_endian), boolean(p->has_none), p->none,
-            p->multiplier, p->shift, p->frac_bits, (long long)p->bias);
+            types[p->type], boolean(p->is_little_endian), boolean(p->is_fast), boolean(p->has_none),
+            p->none, p->multiplier, p->shift, p->frac_bits, (long long)p->bias);
 }
 
 static void print_types(FILE *out, const struct lm_bus_row *row)

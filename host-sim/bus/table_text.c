@@ -4,6 +4,7 @@
 #include "hs/input_file.h"
 #include "hs/number.h"
 #include "lm/canas.h"
+#include "lm/fast_packet.h"
 
 #include <errno.h>
 #include <math.h>
@@ -65,9 +66,9 @@ static int read_bits(const struct reader *r, const char *key, const char *text,
     unsigned first, count;
     char rest;
     if (sscanf(text, "%u+%u%c", &first, &count, &rest) != 2 || count < 1 || count > 64 ||
-        first > 64 - count) {
+        first > 8 * LM_FAST_PACKET_BYTES) {
         return wrong(r, "write the number of the first bit and how many, as 16+32",
-                     "is not a run of bits within 64", key);
+                     "is not a run of bits", key);
     }
     *bits = (struct lm_bus_bits){(uint16_t)first, (uint8_t)count};
     return 0;
@@ -242,6 +243,14 @@ static int take_endian(const struct reader *r, struct item *item, const char *te
                : wrong(r, "write big or little", "is no order of bytes", text);
 }
 
+static int take_packet(const struct reader *r, struct item *item, const char *text)
+{
+    item->row.packing.is_fast = strcmp(text, "fast") == 0;
+    return item->row.packing.is_fast || strcmp(text, "single") == 0
+               ? 0
+               : wrong(r, "write single or fast", "is no kind of packet", text);
+}
+
 static int take_none(const struct reader *r, struct item *item, const char *text)
 {
     long none;
@@ -305,7 +314,8 @@ static const struct word {
     {"dead", take_dead},         {"range", take_range},   {"types", take_types},
     {"per-unit", take_per_unit}, {"bits", take_bits},     {"when", take_when},
     {"type", take_type},         {"endian", take_endian}, {"none", take_none},
-    {"scale", take_scale},       {"offset", take_offset}, {"unit", take_unit},
+    {"scale", take_scale},       {"offset", take_offset}, {"packet", take_packet},
+    {"unit", take_unit},
 };
 
 /* ---- the arithmetic of a packed number ---- */
@@ -347,6 +357,19 @@ static int fit_arithmetic(const struct reader *r, struct item *item)
 
 /* ---- checks ---- */
 
+static int check_run(const struct reader *r, const char *key, const struct lm_bus_packing *p,
+                     struct lm_bus_bits bits)
+{
+    const unsigned room = p->is_fast ? 8 * LM_FAST_PACKET_BYTES : 64;
+    if (bits.first + (unsigned)bits.count > room) {
+        return wrong(r, p->is_fast ? NULL : "packet=fast joins messages of several frames",
+                     "end behind the frame or message", key);
+    }
+    return bits.first % 8 + bits.count <= 64
+               ? 0
+               : wrong(r, NULL, "begin and end more than eight bytes apart", key);
+}
+
 static int check_packed(const struct reader *r, struct item *item)
 {
     struct lm_bus_packing *p = &item->row.packing;
@@ -358,6 +381,9 @@ static int check_packed(const struct reader *r, struct item *item)
     }
     if (!item->has_bits) {
         return wrong(r, "add bits=FIRST+COUNT", "is missing", "bits");
+    }
+    if (check_run(r, "bits", p, p->bits) != 0 || check_run(r, "when", p, p->match) != 0) {
+        return -1;
     }
     if (is_float ? p->bits.count != 32 && p->bits.count != 64 : p->bits.count > 32) {
         return wrong(r, "an integer has 1 to 32, a float 32 or 64", "do not fit the type", "bits");
@@ -439,7 +465,14 @@ static int check_rivals(const struct reader *r, const struct lm_bus_row *row)
             return wrong(r, NULL, "is there already", "id");
         }
         const uint32_t common = other->packing.mask & row->packing.mask;
-        same_frame += (other->id & common) == (row->id & common);
+        const bool is_same = (other->id & common) == (row->id & common);
+        if (p->framing == LM_BUS_PACKED && is_same &&
+            other->packing.is_fast != row->packing.is_fast) {
+            return wrong(r, NULL,
+                         "is of a frame that is a fast packet in another item, or not here",
+                         "item");
+        }
+        same_frame += is_same;
     }
     return p->framing == LM_BUS_PACKED && same_frame > LM_BUS_EVENTS
                ? wrong(r, NULL, "has more than eight numbers in one frame", "item")

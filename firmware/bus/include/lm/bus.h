@@ -3,11 +3,13 @@
 #define LM_BUS_H
 
 #include "lm/canas.h"
+#include "lm/fast_packet.h"
 
 /* State of the decoder; the caller owns it. Counters only ever grow. */
 struct lm_bus {
     const struct lm_bus_profile *profile; /* borrowed as long as the decoder is used */
     struct lm_canas canas;
+    struct lm_fast_packet fast;
     struct {
         uint32_t frames;                   /* given to lm_bus_take */
         uint32_t outcome[LM_BUS_OUTCOMES]; /* of each frame; of each number in a packed frame */

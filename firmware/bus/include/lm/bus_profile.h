@@ -21,11 +21,12 @@ enum lm_bus_packed_type { LM_BUS_UNSIGNED, LM_BUS_SIGNED, LM_BUS_FLOAT }; /* FLO
 /* Encoding of a number in a frame of a packed profile. */
 struct lm_bus_packing {
     uint32_t mask;            /* a frame is the row's if its identifier & mask is the row's id */
-    struct lm_bus_bits bits;  /* count 1..64, of integers 1..32 */
+    struct lm_bus_bits bits;  /* count 1..64, of integers 1..32; within 64 bits from a byte on */
     struct lm_bus_bits match; /* count 0..8; the row applies if these bits are match_value */
     uint8_t match_value;
     uint8_t type; /* enum lm_bus_packed_type */
     bool is_little_endian, has_none;
+    bool is_fast;  /* the bits are those of a joined message: lm/fast_packet.h */
     uint32_t none; /* if has_none: the integer, as encoded, for "not available" */
     /* value = (number * multiplier + bias) / 2^shift, rounded down. The number of a FLOAT is taken
      * times 2^frac_bits. |number| < 2^32, multiplier < 2^30 and |bias| < 2^61 keep every step below
@@ -106,7 +107,8 @@ const struct lm_bus_profile *lm_bus_profile_named(const struct lm_bus_named_prof
  *   none, or, where types are assumed, two; per_unit outside 1..10^9;
  * - packed: an identifier outside its mask, bits outside the frame or unfit for their type, a
  * number of struct lm_bus_packing outside what its remarks say, more than LM_BUS_EVENTS rows for a
- * frame, or a field that comes in sets (lm_bus_is_of_set);
+ *   frame, one frame both as a fast packet and by itself, or a field that comes in sets
+ *   (lm_bus_is_of_set);
  * - two rows of one field have the same priority, or both take halves of a DOUBLE.
  *
  * Cost: grows with the square of the rows; done once, when a table is read. */
@@ -115,7 +117,7 @@ int lm_bus_profile_check(const struct lm_bus_profile *profile, uint32_t *row);
 /* Outcome of a frame, or of a number in it. Each has a counter. */
 enum lm_bus_outcome {
     LM_BUS_VALUE,         /* an event is filled */
-    LM_BUS_HALF,          /* half of a DOUBLE, kept until the other half comes */
+    LM_BUS_HALF,          /* a part, kept until the rest comes: of a DOUBLE, of a fast packet */
     LM_BUS_NOT_DATA,      /* remote frame, or the controller's report of an error */
     LM_BUS_FOREIGN,       /* no identifier of the profile's framing */
     LM_BUS_OTHER_CHANNEL, /* a redundancy channel of LM_BUS_CHANNELS or above */
