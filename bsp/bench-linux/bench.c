@@ -76,6 +76,7 @@ int bench_open(struct bench *b, const struct bench_scene *scene, const struct be
                                  .flash = &b->flash.port,
                                  .can = bus->can,
                                  .bus_profile = bus->profile,
+                                 .can_2 = bus->can_2,
                                  .bus_node = bus->node,
                                  .is_heading_magnetic = bus->is_heading_magnetic,
                                  .tells_reports = bus->tells_reports,
@@ -87,6 +88,7 @@ int bench_open(struct bench *b, const struct bench_scene *scene, const struct be
                                  .noise_seed = noise_seed,
                                  .options = glass->options,
                                  .flash_poll_limit = 1000};
+    memcpy(b->board.tables, bus->tables, sizeof b->board.tables);
     const int status = lend_memory(b) == 0 ? lm_unit_init(b->unit, &b->board) : LM_ERR_NO_MEMORY;
     if (status != LM_OK) {
         const struct lm_radar *const radar = b->board.radar;

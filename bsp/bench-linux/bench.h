@@ -22,12 +22,14 @@ struct bench {
 
 /* Bus that the unit is connected to. */
 struct bench_bus {
-    const struct lm_can *can;             /* borrowed */
-    const struct lm_bus_profile *profile; /* NULL: the database's, or canas17 */
-    uint8_t node;                         /* the unit's own CANaerospace node; 0: it only listens */
-    bool is_heading_magnetic;             /* LM_BUS_HEADING is from magnetic north */
-    bool tells_reports;                   /* it tells lm/canas_report.h as that node */
-    bool obeys_controls;                  /* of the bus: lm/canas_control.h */
+    const struct lm_can *can;                         /* borrowed */
+    const struct lm_bus_profile *profile;             /* NULL: the database's, or canas17 */
+    const struct lm_can *can_2;                       /* borrowed; NULL: there is one interface */
+    struct lm_board_table tables[LM_BUS_TABLES_MORE]; /* heard besides */
+    uint8_t node;             /* the unit's own CANaerospace node; 0: it only listens */
+    bool is_heading_magnetic; /* LM_BUS_HEADING is from magnetic north */
+    bool tells_reports;       /* it tells lm/canas_report.h as that node */
+    bool obeys_controls;      /* of the bus: lm/canas_control.h */
 };
 
 /* What the unit looks at, and with. */

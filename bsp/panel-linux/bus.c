@@ -33,15 +33,18 @@ static int send_frame(void *ctx, const struct lm_can_frame *frame)
 }
 
 void bus_open(struct bus *b, const char *interface, const struct lm_bus_profile *profile,
-              uint64_t zero_us)
+              const struct lm_bus_profile *beside, uint64_t zero_us)
 {
     *b = (struct bus){.socket.fd = -1, .driver = drv_no_can};
     b->port = (struct lm_can){.ctx = b, .receive = receive};
     if (interface[0] == '\0') {
         return;
     }
-    struct lm_can_filter filters[LM_BUS_FILTERS_MAX];
-    const uint32_t count = lm_bus_filters(profile, filters);
+    struct lm_can_filter filters[2 * LM_BUS_FILTERS_MAX]; /* a socket takes 512 */
+    uint32_t count = lm_bus_filters(profile, filters);
+    if (beside != NULL) {
+        count += lm_bus_filters(beside, filters + count);
+    }
     report_loss(b, drv_can_socket_open(&b->socket, interface, filters, count, zero_us));
     b->driver = drv_can_socket_port(&b->socket);
     b->port.send = send_frame;

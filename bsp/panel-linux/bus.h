@@ -19,10 +19,11 @@ struct bus {
 };
 
 /* Open the interface; an empty name means no bus. Never fails: an interface that is missing is
- * reported and looked for from then on. `zero_us` is the time of CLOCK_MONOTONIC at which the
- * firmware's clock is 0. *b must not move until bus_close. */
+ * reported and looked for from then on. What is heard is what
+ * the profile takes, and `beside`, which may be NULL. `zero_us` is the time of CLOCK_MONOTONIC at
+ * which the firmware's clock is 0. *b must not move until bus_close. */
 void bus_open(struct bus *b, const char *interface, const struct lm_bus_profile *profile,
-              uint64_t zero_us);
+              const struct lm_bus_profile *beside, uint64_t zero_us);
 void bus_close(struct bus *b);
 
 /* File descriptor for poll(): readable when a frame waits; -1: the bus is not open now. */

@@ -41,6 +41,9 @@ struct config {
     char can[CONFIG_NAME];
     const struct lm_bus_profile *can_profile; /* NULL: can_table, the database's, or canas17 */
     char can_table[CONFIG_PATH];
+    char can_2[CONFIG_NAME];                    /* a second interface */
+    const struct lm_bus_profile *can_2_profile; /* NULL: can_2_table, or canas17 */
+    char can_2_table[CONFIG_PATH];
     uint32_t can_node;
     uint32_t can_heading;  /* 1: magnetic */
     uint32_t can_reports;  /* 1: on */

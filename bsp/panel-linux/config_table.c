@@ -33,8 +33,14 @@ const struct config_row config_table[] = {
            "the database's table, or canas17 where there is neither."),
     OPTION(CONFIG_PATH_TO, can_table, 0, ROOM(can_table), "none", "can.table", "PATH | none",
            "none",
-           "Table of the bus, a text (docs/bus.md). With one that cannot be read the bus is not "
-           "heard."),
+           "Table of the bus, a text (docs/bus.md). Beside a can.profile that is named, both are "
+           "heard. With a table that cannot be read, or that clashes, the bus is not heard."),
+    OPTION(CONFIG_TEXT, can_2, 0, 16, "none", "can2", "INTERFACE | none", "none",
+           "A second interface, which is only heard."),
+    OPTION(CONFIG_PROFILE, can_2_profile, 0, 0, NULL, "can2.profile", "PROFILE | auto", "auto",
+           "What its frames mean. auto: can2.table, or canas17 where there is none."),
+    OPTION(CONFIG_PATH_TO, can_2_table, 0, ROOM(can_2_table), "none", "can2.table", "PATH | none",
+           "none", "Table of the second bus; as can.table."),
     OPTION(
         CONFIG_NUMBER, can_node, 0, 255, NULL, "can.node", "0..255", "0",
         "The panel's node on a CANaerospace bus, where it answers requests; 0: it only listens."),

@@ -166,6 +166,7 @@ static void wait_for_work(const struct panel *p, uint64_t stepped_us)
     struct pollfd wake[] = {
         {.fd = p->signals, .events = POLLIN},
         {.fd = bus_fd(&p->bus), .events = POLLIN},
+        {.fd = bus_fd(&p->bus_2), .events = POLLIN},
         {.fd = bezel_fd(&p->bezel), .events = POLLIN},
         {.fd = glass_fd(&p->glass), .events = POLLIN},
     };

@@ -136,7 +136,12 @@ static int read_config(struct command *c, struct config *config)
 static bool are_files_sound(const struct config *config)
 {
     static struct bus_table table;
-    return config->can_table[0] == '\0' || bus_table_load(&table, config->can_table) == 0;
+    const char *const paths[] = {config->can_table, config->can_2_table};
+    bool is_sound = true;
+    for (size_t i = 0; i < 2; i++) {
+        is_sound = (paths[i][0] == '\0' || bus_table_load(&table, paths[i]) == 0) && is_sound;
+    }
+    return is_sound;
 }
 
 int main(int argc, char **argv)

@@ -1,6 +1,7 @@
 #include "panel.h"
 
 #include "drv/not_fitted.h"
+#include "lm/bus_filters.h"
 #include "lm/radar_record.h"
 #include "lm/sensor.h"
 #include "report.h"
@@ -125,13 +126,66 @@ static const struct lm_flash *choose_radar(struct panel *p, const struct lm_flas
     return flash;
 }
 
-/* Open the bus behind the unit, which knows by now what its frames mean. A panel that was told its
- * table hears nothing without it. */
-static void start_bus(struct panel *p, bool has_table)
+/* What an interface is heard by: the first profile NULL where the unit chooses, the second where
+ * there is one. False if it shall not be heard at all: a panel that was told its tables takes no
+ * frame for what it is not. */
+static bool choose_tables(const struct lm_bus_profile *profile, const char *path,
+                          struct bus_table *table, const struct lm_bus_profile *heard[2])
 {
-    const struct lm_bus_profile *profile = p->unit->bus.profile;
-    bus_open(&p->bus, has_table ? p->config->can : "", profile, p->zero_us);
-    report(REPORT_INFO, "bus: %s: table %s", p->config->can, profile->name);
+    uint32_t id;
+    heard[0] = profile;
+    heard[1] = NULL;
+    if (path[0] == '\0') {
+        return true;
+    }
+    if (bus_table_load(table, path) != 0) {
+        return false;
+    }
+    heard[profile != NULL] = &table->profile;
+    if (heard[1] != NULL && lm_bus_profiles_clash(heard[0], heard[1], &id)) {
+        report(REPORT_ERROR, "%s: it and %s both take frame %X; hear them on two interfaces", path,
+               profile->name, id);
+        return false;
+    }
+    return true;
+}
+
+/* The board's part of what choose_tables found. */
+static void lend_tables(struct lm_board *board, const struct lm_bus_profile *const first[2],
+                        const struct lm_bus_profile *const second[2])
+{
+    const struct lm_board_table all[] = {{first[1], 0}, {second[0], 1}, {second[1], 1}};
+    uint32_t count = 0;
+    board->bus_profile = first[0];
+    for (uint32_t i = 0; i < sizeof all / sizeof all[0]; i++) {
+        if (all[i].profile != NULL) {
+            board->tables[count++] = all[i];
+        }
+    }
+}
+
+/* Choose what both interfaces are heard by, start the unit, and open them behind it: only it knows
+ * then which table the database has. */
+static void start_with_buses(struct panel *p)
+{
+    const struct config *c = p->config;
+    const struct lm_bus_profile *first[2], *second[2] = {NULL, NULL};
+    const bool has_first = choose_tables(c->can_profile, c->can_table, &p->table, first);
+    bool has_second =
+        c->can_2[0] != '\0' && choose_tables(c->can_2_profile, c->can_2_table, &p->table_2, second);
+    if (has_second && second[0] == NULL) {
+        second[0] = &lm_bus_canas17;
+    }
+    lend_tables(&p->board, first, second);
+    p->board.can_2 = c->can_2[0] != '\0' ? &p->bus_2.port : NULL;
+    start_with_flash(p, p->board.flash);
+    first[0] = p->unit->bus.profile;
+    bus_open(&p->bus, has_first ? c->can : "", first[0], first[1], p->zero_us);
+    report(REPORT_INFO, "bus: %s: table %s%s%s", c->can, first[0]->name, first[1] ? ", " : "",
+           first[1] ? first[1]->name : "");
+    if (c->can_2[0] != '\0') {
+        bus_open(&p->bus_2, has_second ? c->can_2 : "", second[0], second[1], p->zero_us);
+    }
 }
 
 static int start_unit(struct panel *p, const struct lm_flash *flash)
@@ -160,14 +214,7 @@ static int start_unit(struct panel *p, const struct lm_flash *flash)
         return -1;
     }
     p->board.flash = choose_radar(p, flash);
-    p->board.bus_profile = p->config->can_profile;
-    const char *const table = p->config->can_table;
-    const bool has_table = table[0] == '\0' || bus_table_load(&p->table, table) == 0;
-    if (table[0] != '\0' && has_table) {
-        p->board.bus_profile = &p->table.profile;
-    }
-    start_with_flash(p, p->board.flash);
-    start_bus(p, has_table);
+    start_with_buses(p);
     p->flash.patience_us = 0;
     return 0;
 }
@@ -201,7 +248,7 @@ int panel_open(struct panel *p, const struct config *config)
     memset(p, 0, sizeof *p);
     p->config = config;
     p->file.descriptor = p->mtd.fd = p->bezel.gpio.fd = p->bezel.backlight_fd = -1;
-    p->bus.socket.fd = -1;
+    p->bus.socket.fd = p->bus_2.socket.fd = -1;
     p->zero_us = monotonic_us();
     p->signals = open_signals();
     p->controls = (struct lm_controls){.ctx = p, .next = next_control};
@@ -228,6 +275,7 @@ void panel_close(struct panel *p)
     bezel_close(&p->bezel);
     glass_close(&p->glass);
     bus_close(&p->bus);
+    bus_close(&p->bus_2);
     drv_flash_reader_stop(&p->flash);
     drv_flash_mtd_close(&p->mtd);
     if (p->file.descriptor >= 0) {

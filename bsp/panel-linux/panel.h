@@ -26,15 +26,15 @@ struct panel {
     struct drv_flash_file file;
     struct drv_flash_mtd mtd;
     struct drv_flash_reader flash;
-    struct bus bus;
+    struct bus bus, bus_2;
     struct glass glass;
     struct bezel bezel;
     struct hand hand;
     struct lm_controls controls;
     struct drv_watchdog watchdog;
-    int signals;            /* file descriptor of signalfd */
-    struct lm_radar radar;  /* of the configuration, where it names one */
-    struct bus_table table; /* likewise */
+    int signals;                     /* file descriptor of signalfd */
+    struct lm_radar radar;           /* of the configuration, where it names one */
+    struct bus_table table, table_2; /* likewise */
     struct lm_board board;
     struct lm_unit *unit; /* owned */
     uint32_t flags_told;  /* enum lm_flag, as reported last */

@@ -22,11 +22,16 @@ static void add_pair(struct lm_text *t, const char *first, uint32_t value, const
 }
 
 /* Frames of the profile's identifiers whose contents were refused. */
-static uint32_t bad_frames(const struct lm_bus *bus)
+static uint32_t bad_frames(const struct lm_unit *u)
 {
     uint32_t bad = 0;
     for (uint32_t i = LM_BUS_BAD_LENGTH; i < LM_BUS_OUTCOMES; i++) {
-        bad += i != LM_BUS_NO_DATA ? bus->count.outcome[i] : 0;
+        if (i != LM_BUS_NO_DATA) {
+            bad += u->bus.count.outcome[i];
+            for (uint32_t t = 0; t < LM_BUS_TABLES_MORE; t++) {
+                bad += u->more[t].count.outcome[i];
+            }
+        }
     }
     return bad;
 }
@@ -57,7 +62,7 @@ static void add_counters(const struct lm_unit *u, uint32_t row, struct lm_text *
         add_pair(t, "BUS", u->count.bus_frames, "BUS ERR", u->count.bus_errors);
         break;
     case 3:
-        add_pair(t, "BUS BAD", bad_frames(&u->bus), "TORN", u->bus.canas.count.torn_pairs);
+        add_pair(t, "BUS BAD", bad_frames(u), "TORN", u->bus.canas.count.torn_pairs);
         break;
     case 4:
         add_pair(t, "JUMPS", u->nav.position_jumps, "REFUSED", u->count.commands_refused);

@@ -48,6 +48,13 @@ static uint32_t terrain_flags(const struct lm_unit *u)
     return height_m_q10 + BELOW_M_Q10 < u->ground_m_q10 ? LM_FLAG_BELOW : 0;
 }
 
+/* Of two interfaces, either. */
+static bool is_bus_silent(const struct lm_unit *u, uint64_t now_us)
+{
+    return now_us - u->last_bus_us > LM_BUS_SILENT_US ||
+           (u->board->can_2 && now_us - u->last_bus_2_us > LM_BUS_SILENT_US);
+}
+
 uint32_t lm_update_flags(struct lm_unit *u, uint64_t now_us)
 {
     const uint32_t flags = map_flags(u, now_us) | nav_flags(u) | terrain_flags(u) |
@@ -57,7 +64,7 @@ uint32_t lm_update_flags(struct lm_unit *u, uint64_t now_us)
                            (u->weather.is_stale ? LM_FLAG_WEATHER : 0u) |
                            (u->exercise.is_stale ? LM_FLAG_EXERCISE : 0u) |
                            (now_us < u->unable.until_us ? LM_FLAG_UNABLE : 0u) |
-                           (now_us - u->last_bus_us > LM_BUS_SILENT_US ? LM_FLAG_BUS : 0u);
+                           (is_bus_silent(u, now_us) ? LM_FLAG_BUS : 0u);
     const uint32_t risen = flags & ~u->flags;
     lm_fault_log_add(&u->faults, risen, now_us);
     u->flags = flags;

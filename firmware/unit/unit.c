@@ -4,11 +4,15 @@
 #include "flags.h"
 #include "follow.h"
 #include "fx/mem.h"
+#include "fx/sat.h"
 #include "lm/radar_check.h"
 #include "lm/version.h"
 #include "pacing.h"
 #include "present.h"
 #include "report.h"
+
+/* Priorities of a further table's rows: four tables share the 256 of an event. */
+enum { PRIORITIES_A_TABLE = 64 };
 
 static void init_picture(struct lm_unit *u)
 {
@@ -52,6 +56,9 @@ int lm_unit_init(struct lm_unit *u, const struct lm_board *board)
                                        : u->map.bus       ? u->map.bus
                                                           : &lm_bus_canas17;
     lm_bus_init(&u->bus, bus);
+    for (uint32_t t = 0; t < LM_BUS_TABLES_MORE && board->tables[t].profile; t++) {
+        lm_bus_init(&u->more[t], board->tables[t].profile);
+    }
     lm_nav_init(&u->nav);
     u->nav.is_heading_magnetic = board->is_heading_magnetic;
     const uint8_t node = bus->framing == LM_BUS_CANAEROSPACE ? board->bus_node : 0;
@@ -68,24 +75,50 @@ int lm_unit_init(struct lm_unit *u, const struct lm_board *board)
     return LM_OK;
 }
 
-static void take_frame(struct lm_unit *u, const struct lm_can_frame *frame)
+static void take_events(struct lm_unit *u, const struct lm_bus_event *events, uint32_t count)
 {
-    struct lm_bus_event events[LM_BUS_EVENTS];
-    const uint32_t count = lm_bus_take(&u->bus, frame, events);
     for (uint32_t i = 0; i < count; i++) {
         lm_nav_take(&u->nav, &events[i]);
         lm_weather_bus_take(&u->weather.bus, &events[i]);
         lm_exercise_take(&u->exercise, &events[i]);
     }
-    lm_canas_service_take(&u->service, frame);
-    lm_canas_control_take(&u->control_bus, frame);
 }
 
-static void take_bus(struct lm_unit *u, uint64_t now_us)
+/* Decode a frame by the further tables of its interface. */
+static void take_by_more(struct lm_unit *u, uint8_t interface, const struct lm_can_frame *frame)
 {
-    const struct lm_can *can = u->board->can;
+    const struct lm_board_table *tables = u->board->tables;
+    for (uint32_t t = 0; t < LM_BUS_TABLES_MORE && tables[t].profile; t++) {
+        struct lm_bus_event events[LM_BUS_EVENTS];
+        if (tables[t].interface != interface) {
+            continue;
+        }
+        const uint32_t count = lm_bus_take(&u->more[t], frame, events);
+        for (uint32_t i = 0; i < count; i++) {
+            const uint32_t priority = fx_min_u32(events[i].priority, PRIORITIES_A_TABLE - 1);
+            events[i].priority = (uint8_t)(priority + (t + 1) * PRIORITIES_A_TABLE);
+        }
+        take_events(u, events, count);
+    }
+}
+
+static void take_frame(struct lm_unit *u, uint8_t interface, const struct lm_can_frame *frame)
+{
+    if (interface == 0) {
+        struct lm_bus_event events[LM_BUS_EVENTS];
+        take_events(u, events, lm_bus_take(&u->bus, frame, events));
+        lm_canas_service_take(&u->service, frame);
+        lm_canas_control_take(&u->control_bus, frame);
+    }
+    take_by_more(u, interface, frame);
+}
+
+/* Take at most `room` frames of an interface. Returns how many more there is room for. */
+static uint32_t take_interface(struct lm_unit *u, uint8_t interface, uint32_t room, uint64_t now_us)
+{
+    const struct lm_can *can = interface == 0 ? u->board->can : u->board->can_2;
     struct lm_can_frame frame;
-    for (uint32_t i = 0; i < LM_STEP_FRAMES; i++) {
+    for (; room > 0; room--) {
         const int status = can->receive(can->ctx, &frame);
         if (status != 1) {
             u->count.bus_errors += status < 0;
@@ -93,11 +126,20 @@ static void take_bus(struct lm_unit *u, uint64_t now_us)
         }
         u->count.bus_frames++;
         if (!frame.is_error) {
-            u->last_bus_us = now_us;
+            *(interface == 0 ? &u->last_bus_us : &u->last_bus_2_us) = now_us;
         }
-        take_frame(u, &frame);
+        take_frame(u, interface, &frame);
     }
-    lm_canas_service_answer(&u->service, can, u->flags, now_us);
+    return room;
+}
+
+static void take_bus(struct lm_unit *u, uint64_t now_us)
+{
+    const uint32_t room = take_interface(u, 0, LM_STEP_FRAMES, now_us);
+    if (u->board->can_2) {
+        (void)take_interface(u, 1, room, now_us);
+    }
+    lm_canas_service_answer(&u->service, u->board->can, u->flags, now_us);
     lm_nav_at(&u->nav, now_us, &u->ownship);
     lm_exercise_at(&u->exercise, now_us);
 }

@@ -65,6 +65,36 @@ check 'verify finds nothing wrong with the image' exits 0 "$bin/landmass-db" ver
 exits 0 "$bin/landmass-db" inspect "$work/table.lmdb"
 check 'inspect names the table' printed '^bus table  *moved$'
 
+# Attitude, velocity and heading on other identifiers than the position: on one interface, and on two. The second log
+# begins with the first's first frame, so that both have one clock.
+near='^[^#]* (1[0-9A-F][0-9A-F]|4[67][0-9A-F])#'
+sed -E "/$near/"'!d' "$work/plain.log" >"$work/rest.log"
+{
+    head -n 1 "$work/plain.log"
+    sed -f "$work/move.sed" "$work/rest.log"
+} >"$work/second.log"
+sed -E "/$near/d" "$work/plain.log" >"$work/first.log"
+{ head -n 1 "$work/plain.log"; cat "$work/first.log"; } | uniq >"$work/begun.log" && mv "$work/begun.log" "$work/first.log"
+{
+    sed 's/^/0 /' "$work/first.log"
+    sed -f "$work/move.sed" "$work/rest.log" | sed 's/^/1 /'
+} | sort -s -k 2,2 | cut -d ' ' -f 2- >"$work/mixed.log"
+check 'two tables are heard side by side on one interface' fly beside --db "$work/plain.lmdb" --bus "$work/mixed.log" \
+    --profile canas17 --table "$work/moved.bus"
+check 'pixel by pixel' same plain beside
+check 'and by two interfaces' fly two --db "$work/plain.lmdb" --bus "$work/first.log" \
+    --bus2 "$work/second.log" --table2 "$work/moved.bus"
+check 'pixel by pixel' same plain two
+check 'without the second the flight is another' fly one --db "$work/plain.lmdb" --bus "$work/first.log"
+same plain one && lost=no || lost=yes
+check 'as the glass shows' test $lost = yes
+sed 's/id=1436 /id=1036 /' "$work/moved.bus" >"$work/clash.bus"
+check 'two tables that claim one identifier are refused' exits 1 "$bin/landmass-sim" --db "$work/plain.lmdb" \
+    --bus "$work/mixed.log" --profile canas17 --table "$work/clash.bus"
+check 'which is named' said 'moved: and canas17 both take frame 40C; hear them on two interfaces'
+check 'a second table needs a second interface' exits 2 "$bin/landmass-sim" --db "$work/plain.lmdb" \
+    --bus "$work/mixed.log" --table2 "$work/moved.bus"
+
 # A damaged record, and mistakes of a text.
 cp "$work/table.lmdb" "$work/damaged.lmdb"
 at=$(LC_ALL=C grep -abo 'steerpoint-latitude' "$work/table.lmdb" | head -n 1 | cut -d: -f1)

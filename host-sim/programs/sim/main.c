@@ -31,12 +31,15 @@ enum { STEP_US = 2000, MALFORMED_SHOWN = 5 };
 
 struct sim {
     struct options options;
-    struct lm_radar radar;  /* of --radar */
-    struct bus_table table; /* of --table */
+    struct lm_radar radar;           /* of --radar */
+    struct bus_table table, table_2; /* of --table, --table2 */
     struct script script;
     struct bench bench;
     FILE *log_file;
     struct drv_can_log log;
+    FILE *log_file_2; /* of --bus2 */
+    struct drv_can_log log_2;
+    struct lm_can can_2;
     struct drv_can_socket socket;
     struct lm_can can;
     struct hs_atomic_file sent; /* of --bus-out */
@@ -94,6 +97,25 @@ static void report_malformed(void *ctx, uint32_t line, const char *cause)
     }
 }
 
+/* The log of the second interface, from the same time on as the first. */
+static int open_second_log(struct sim *s)
+{
+    const struct options *o = &s->options;
+    if (!o->bus_log_2) {
+        return 0;
+    }
+    s->log_file_2 = hs_input_open(o->bus_log_2, "r");
+    if (!s->log_file_2) {
+        return hs_error(o->bus_log_2, "landmass-nav makes one from a track", "cannot be opened: %s",
+                        strerror(errno));
+    }
+    drv_can_log_init(&s->log_2, s->log_file_2, NULL, NULL);
+    s->can_2 = drv_can_log_port(&s->log_2);
+    return drv_can_log_skip(&s->log_2, (uint64_t)llround(o->start_s * 1e6)) == LM_OK
+               ? 0
+               : hs_error(o->bus_log_2, "begin earlier", "ends before %g s", o->start_s);
+}
+
 static int open_bus(struct sim *s)
 {
     const struct options *o = &s->options;
@@ -115,8 +137,11 @@ static int open_bus(struct sim *s)
         struct timespec now;
         clock_gettime(CLOCK_MONOTONIC, &now);
         const uint64_t zero_us = (uint64_t)now.tv_sec * 1000000u + (uint64_t)now.tv_nsec / 1000u;
-        struct lm_can_filter filters[LM_BUS_FILTERS_MAX];
-        const uint32_t count = lm_bus_filters(s->bench.unit->bus.profile, filters);
+        struct lm_can_filter filters[2 * LM_BUS_FILTERS_MAX];
+        uint32_t count = lm_bus_filters(s->bench.unit->bus.profile, filters);
+        if (s->bench.board.tables[0].profile) {
+            count += lm_bus_filters(s->bench.board.tables[0].profile, filters + count);
+        }
         if (drv_can_socket_open(&s->socket, o->can_interface, filters, count, zero_us) != LM_OK) {
             return hs_error(o->can_interface, NULL, "%s", s->socket.error);
         }
@@ -197,6 +222,9 @@ static int step(struct sim *s, uint64_t now_us)
     }
     if (s->log_file) {
         drv_can_log_set_now(&s->log, now_us);
+    }
+    if (s->log_file_2) {
+        drv_can_log_set_now(&s->log_2, now_us);
     }
     const uint32_t before = s->bench.pictures;
     s->now_us = now_us;
@@ -418,6 +446,44 @@ static void warn_of_database(const struct sim *s)
     }
 }
 
+/* Hear `profile` on that interface besides. Two tables of one interface must not claim one
+ * identifier. */
+static int hear_beside(struct bench_bus *bus, const struct lm_bus_profile *first,
+                       const struct lm_bus_profile *profile, uint8_t interface)
+{
+    uint32_t id;
+    if (first && lm_bus_profiles_clash(first, profile, &id)) {
+        return hs_error(profile->name, "hear them on two interfaces", "and %s both take frame %X",
+                        first->name, id);
+    }
+    struct lm_board_table *table = bus->tables;
+    while (table->profile) {
+        table++; /* at most three are ever added */
+    }
+    *table = (struct lm_board_table){profile, interface};
+    return 0;
+}
+
+/* The tables of both interfaces. */
+static int choose_tables(struct sim *s, struct bench_bus *bus)
+{
+    const struct options *o = &s->options;
+    bus->profile = o->profile || !o->table ? o->profile : &s->table.profile;
+    if (o->profile && o->table && hear_beside(bus, o->profile, &s->table.profile, 0) != 0) {
+        return -1;
+    }
+    if (!o->bus_log_2) {
+        return 0;
+    }
+    const struct lm_bus_profile *second =
+        o->profile_2 || o->table_2 ? o->profile_2 : &lm_bus_canas17;
+    bus->can_2 = &s->can_2;
+    if (second && hear_beside(bus, NULL, second, 1) != 0) {
+        return -1;
+    }
+    return o->table_2 ? hear_beside(bus, second, &s->table_2.profile, 1) : 0;
+}
+
 static int run(struct sim *s)
 {
     const struct options *o = &s->options;
@@ -426,13 +492,19 @@ static int run(struct sim *s)
                         strerror(errno));
     }
     if ((o->radar && radar_text_read(&s->radar, o->radar) != 0) ||
-        (o->table && bus_table_load(&s->table, o->table) != 0)) {
+        (o->table && bus_table_load(&s->table, o->table) != 0) ||
+        (o->table_2 && bus_table_load(&s->table_2, o->table_2) != 0)) {
         return -1;
     }
     hands_init(&s->hands, &s->script.port);
-    const struct lm_bus_profile *const profile = o->table ? &s->table.profile : o->profile;
-    const struct bench_bus bus = {&s->can,         profile,          o->node,
-                                  o->heading == 1, o->tells_reports, o->obeys_controls};
+    struct bench_bus bus = {.can = &s->can,
+                            .node = o->node,
+                            .is_heading_magnetic = o->heading == 1,
+                            .tells_reports = o->tells_reports,
+                            .obeys_controls = o->obeys_controls};
+    if (choose_tables(s, &bus) != 0) {
+        return -1;
+    }
     const struct bench_glass glass = {o->width_px, o->height_px, o->glass};
     const struct bench_scene scene = {o->database, o->radar ? &s->radar : NULL};
     if (bench_open(&s->bench, &scene, &glass, o->seed, &bus, &s->hands.port) != 0) {
@@ -440,7 +512,7 @@ static int run(struct sim *s)
     }
     warn_of_database(s);
     /* What an interface lets through is what the unit hears, which the database may say. */
-    if (open_bus(s) != 0 || open_sent_log(s) != 0 ||
+    if (open_bus(s) != 0 || open_second_log(s) != 0 || open_sent_log(s) != 0 ||
         script_read(&s->script, o->script, s->bench.unit->map.radar) != 0 || open_bezel(s) != 0) {
         bench_close(&s->bench);
         return -1;
@@ -478,6 +550,9 @@ int main(int argc, char **argv)
     hs_atomic_abort(&s->sent);
     if (s->log_file) {
         fclose(s->log_file);
+    }
+    if (s->log_file_2) {
+        fclose(s->log_file_2);
     }
     free(s);
     return hs_report_end(exit_code);

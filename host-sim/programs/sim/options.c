@@ -90,7 +90,8 @@ struct raw {
 static bool read_table(struct options *o, struct raw *raw, int argc, char **argv, int *exit_code)
 {
     struct hs_taker size = {take_size, o}, glass = {take_glass, &o->glass},
-                    profile = {take_profile, &o->profile};
+                    profile = {take_profile, &o->profile},
+                    profile_2 = {take_profile, &o->profile_2};
     const struct hs_option options[] = {
         {"db", HS_INPUT, &o->database, 0, 0, "FILE", "flash image made by landmass-db build", true},
         {"bus", HS_INPUT, &o->bus_log, 0, 0, "FILE.log",
@@ -103,7 +104,12 @@ static bool read_table(struct options *o, struct raw *raw, int argc, char **argv
          "or canas17",
          false},
         {"table", HS_INPUT, &o->table, 0, 0, "FILE",
-         "a text table of the bus instead of a profile (docs/bus.md)", false},
+         "a text table of the bus (docs/bus.md); with --profile it is heard beside that", false},
+        {"bus2", HS_INPUT, &o->bus_log_2, 0, 0, "FILE.log",
+         "a second interface: its log, in flight time from its first frame", false},
+        {"profile2", HS_TAKER, &profile_2, 0, 0, "NAME",
+         "what its frames mean: a profile (canas17, if there is no --table2)", false},
+        {"table2", HS_INPUT, &o->table_2, 0, 0, "FILE", "or a text table, or both", false},
         {"heading", HS_CHOICE, &o->heading, 0, 0, "true|magnetic",
          "what the bus's heading angle (321) is from; a magnetic one needs the variation (1121)",
          false},
@@ -160,8 +166,13 @@ static bool check(const struct options *o, int *exit_code)
         *exit_code = hs_options_wrong(&usage, "--bus", "and --can exclude each other");
         return false;
     }
-    if (o->table && o->profile) {
-        *exit_code = hs_options_wrong(&usage, "--table", "and --profile exclude each other");
+    if ((o->profile_2 || o->table_2) && !o->bus_log_2) {
+        *exit_code = hs_options_wrong(&usage, o->table_2 ? "--table2" : "--profile2",
+                                      "needs the second interface, --bus2");
+        return false;
+    }
+    if (o->bus_log_2 && !o->bus_log) {
+        *exit_code = hs_options_wrong(&usage, "--bus2", "needs the first interface, --bus");
         return false;
     }
     if (o->tells_reports && o->node == 0) {

@@ -21,7 +21,10 @@ struct options {
     bool obeys_controls;                  /* of the bus */
     const struct lm_bus_profile *profile; /* of the bus; NULL: the database's, or canas17 */
     const char *table;                    /* of the bus, a text; NULL: none */
-    uint8_t node;                         /* on the bus; 0: it only listens */
+    const char *bus_log_2;                /* the second interface; NULL: there is none */
+    const struct lm_bus_profile *profile_2;
+    const char *table_2;
+    uint8_t node; /* on the bus; 0: it only listens */
     struct lm_glass_options glass;
 };
 

@@ -54,6 +54,13 @@ _Static_assert(LM_CHIPS_MAX >= 1 && LM_CHIPS_MAX <= 64, "LM_CHIPS_MAX out of ran
 #endif
 _Static_assert(LM_BUS_CHANNELS >= 1 && LM_BUS_CHANNELS <= 8, "LM_BUS_CHANNELS out of range");
 
+/* Tables of the bus that a unit hears besides its first one (lm/unit.h). 1..3; 2 kB each. */
+#ifndef LM_BUS_TABLES_MORE
+#define LM_BUS_TABLES_MORE 3
+#endif
+_Static_assert(LM_BUS_TABLES_MORE >= 1 && LM_BUS_TABLES_MORE <= 3,
+               "LM_BUS_TABLES_MORE out of range");
+
 /* Rows of the longest bus profile (lm/bus_profile.h). 32..255. */
 #ifndef LM_BUS_ROWS_MAX
 #define LM_BUS_ROWS_MAX 64

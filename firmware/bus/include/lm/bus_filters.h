@@ -2,6 +2,8 @@
 #ifndef LM_BUS_FILTERS_H
 #define LM_BUS_FILTERS_H
 
+#include <stdbool.h>
+
 #include "lm/bus_profile.h"
 #include "lm/canas_control.h"
 #include "lm/port.h"
@@ -22,5 +24,13 @@ enum { LM_BUS_FILTERS_MAX = 2 * LM_BUS_ROWS_MAX + LM_CONTROL_ITEMS };
  * opened. */
 uint32_t lm_bus_filters(const struct lm_bus_profile *profile,
                         struct lm_can_filter filters[LM_BUS_FILTERS_MAX]);
+
+/* True if a frame could be taken by both profiles. They must then not be heard on one interface:
+ * its value would count twice, or as two things. *id, which may be NULL, is then an identifier that
+ * both take. Requests of node services and controls,
+ * which every CANaerospace has, do not count. Cost: as above.
+ */
+bool lm_bus_profiles_clash(const struct lm_bus_profile *a, const struct lm_bus_profile *b,
+                           uint32_t *id);
 
 #endif

@@ -45,6 +45,14 @@
 #include "lm/unit_map.h"
 #include "lm/unit_weather.h"
 
+/* Table of a bus that is heard besides the first one. Two that lm_bus_profiles_clash must not be on
+ * one interface. Of a field that several tables have, that of the earlier table is preferred: the
+ * priorities of later ones, of which those above 63 count as 63, follow behind. */
+struct lm_board_table {
+    const struct lm_bus_profile *profile;
+    uint8_t interface; /* 0: can, 1: can_2 */
+};
+
 /* Board: the ports and memory that it lends. All pointers stay borrowed as long as the unit lives.
  * None may be NULL unless its remark says so. */
 struct lm_board {
@@ -53,7 +61,11 @@ struct lm_board {
     const struct lm_flash *flash;
     const struct lm_can *can;
     const struct lm_bus_profile
-        *bus_profile;          /* NULL: the image's table, or lm_bus_canas17 where it has none */
+        *bus_profile;           /* NULL: the image's table, or lm_bus_canas17 where it has none */
+    const struct lm_can *can_2; /* a second interface; NULL: there is none */
+    /* Tables that are heard besides: see struct lm_board_table. The first without a profile ends
+     * them. */
+    struct lm_board_table tables[LM_BUS_TABLES_MORE];
     uint8_t bus_node;          /* the unit's CANaerospace node, 1..255; 0: no node services */
     bool is_heading_magnetic;  /* the bus's LM_BUS_HEADING is from magnetic north */
     bool tells_reports;        /* it also tells lm/canas_report.h and lm/canas_control.h; without
@@ -93,11 +105,13 @@ struct lm_unit {
     const struct lm_board *board; /* borrowed */
 
     struct lm_bus bus;
+    struct lm_bus more[LM_BUS_TABLES_MORE]; /* of board->tables */
     struct lm_nav nav;
     struct lm_canas_service service;
     struct lm_canas_report report;
     struct lm_canas_control control_bus;
-    uint64_t last_bus_us; /* arrival of the last frame that was no error report */
+    uint64_t last_bus_us;   /* arrival of the last frame that was no error report */
+    uint64_t last_bus_2_us; /* the same of can_2 */
     struct {
         uint32_t jumps; /* nav.position_jumps as of the last step */
         uint16_t rank;  /* rank of the position's sender (struct lm_nav_origin) as of then */
@@ -161,8 +175,8 @@ int lm_unit_init(struct lm_unit *u, const struct lm_board *board);
 
 /* Do what is due at `now_us`: microseconds since the start, never less than in the call before. In
  * this order:
- * - take at most LM_STEP_FRAMES frames from the bus, and extrapolate ownship and exercise clock to
- *   now;
+ * - take at most LM_STEP_FRAMES frames from the bus, of two interfaces together, and extrapolate
+ *   ownship and exercise clock to now;
  * - take at most 8 controls of the bus, and 8 of the board;
  * - update the flags, and remove the picture if navigation or the image is lost;
  * - move view and cursor, and the range scale if it follows the cursor;

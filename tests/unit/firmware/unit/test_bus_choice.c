@@ -2,6 +2,7 @@
 #include "check.h"
 #include "fx/crc32c.h"
 #include "lm/bit.h"
+#include "lm/bus_filters.h"
 #include "lm/bus_record.h"
 #include "lm/image.h"
 #include "unit_rig.h"
@@ -76,6 +77,74 @@ TEST(the_board_s_table_wins_over_the_image_s_even_where_that_is_damaged)
     assert_true(r->unit.map.is_usable);
     assert_ptr_equal(r->unit.bus.profile, &lm_bus_xcsoar);
     free_rig(r);
+}
+
+/* One frame that waits. */
+static int give_once(void *ctx, struct lm_can_frame *frame)
+{
+    struct lm_can_frame *waiting = ctx;
+    const bool is_there = waiting->length != 0;
+    *frame = *waiting;
+    waiting->length = 0;
+    return is_there;
+}
+
+TEST(each_table_hears_its_own_interface)
+{
+    struct rig *r = make_rig();
+    struct lm_can_frame first = {.id = 700, .length = 8, .data = {1, LM_CANAS_FLOAT}};
+    struct lm_can_frame second = first;
+    const struct lm_can can = {.ctx = &first, .receive = give_once},
+                        can_2 = {.ctx = &second, .receive = give_once};
+    r->board.lent.bus_profile = &lm_bus_canas17;
+    r->board.lent.can = &can;
+    r->board.lent.can_2 = &can_2;
+    r->board.lent.tables[0] = (struct lm_board_table){&ours, 1};
+    start(r);
+    lm_unit_step(&r->unit, 1000);
+    assert_int_equal(r->unit.bus.count.outcome[LM_BUS_UNUSED], 1);
+    assert_int_equal(r->unit.more[0].count.outcome[LM_BUS_VALUE], 1);
+    assert_int_equal(r->unit.count.bus_frames, 2);
+    /* Its rank lies behind all of the first table's. */
+    assert_int_equal(r->unit.nav.item[LM_BUS_TRUE_ALTITUDE][0].rank, 64 << 8);
+    free_rig(r);
+}
+
+TEST(a_second_interface_that_falls_silent_is_flagged)
+{
+    struct rig *r = make_rig();
+    struct lm_can_frame second = {.id = 5, .length = 1};
+    const struct lm_can can_2 = {.ctx = &second, .receive = give_once};
+    r->board.lent.can_2 = &can_2;
+    start(r);
+    for (uint64_t now_us = 0; now_us < 3000000; now_us += 100000) {
+        struct lm_can_frame first = {.id = 5, .length = 1};
+        const struct lm_can can = {.ctx = &first, .receive = give_once};
+        second.length = now_us < 1500000;
+        r->board.lent.can = &can;
+        lm_unit_step(&r->unit, now_us);
+        const bool is_silent = now_us > 1400000 + LM_BUS_SILENT_US;
+        assert_int_equal((r->unit.flags & LM_FLAG_BUS) != 0, is_silent);
+    }
+    free_rig(r);
+}
+
+TEST(profiles_that_take_one_frame_clash_and_others_do_not)
+{
+    static const struct lm_bus_row far[] = {{.id = 701, .packing.mask = 0x1fffffff}};
+    static const struct lm_bus_row channel[] = {{.id = 0x102bc, .packing.mask = 0x1fffffff}};
+    static const struct lm_bus_profile packed[] = {
+        {.name = "far", .rows = far, .row_count = 1, .framing = LM_BUS_PACKED},
+        {.name = "channel 1 of 700", .rows = channel, .row_count = 1, .framing = LM_BUS_PACKED}};
+    uint32_t id = 0;
+    assert_true(lm_bus_profiles_clash(&lm_bus_canas17, &lm_bus_xcsoar, &id));
+    assert_int_equal(id, 1036);
+    assert_true(lm_bus_profiles_clash(&ours, &ours, NULL));
+    assert_false(lm_bus_profiles_clash(&lm_bus_canas17, &ours, &id));
+    assert_false(lm_bus_profiles_clash(&lm_bus_canas17, &lm_bus_generic, &id));
+    assert_false(lm_bus_profiles_clash(&ours, &packed[0], &id));
+    assert_true(lm_bus_profiles_clash(&ours, &packed[1], &id));
+    assert_true(lm_bus_profiles_clash(&packed[1], &ours, &id));
 }
 
 TEST(an_image_whose_table_is_damaged_is_refused)
