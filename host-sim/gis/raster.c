@@ -343,7 +343,7 @@ static int rename_or_remove(const char *from, const char *to)
     if (access(from, F_OK) == 0) {
         return hs_atomic_rename(from, to);
     }
-    unlink(to); /* It belonged to the file that is replaced. */
+    hs_atomic_remove(to); /* It belonged to the file that is replaced. */
     return 0;
 }
 

@@ -13,9 +13,20 @@
 
 /* Temporary files of this process, so that they can be removed when it is stopped. A signal may
  * come at any time: a slot is written last when it is taken, and first when it is given up. */
-enum { TEMPORARIES_MAX = 256 };
+enum { TEMPORARIES_MAX = 512 };
 static char *volatile temporaries[TEMPORARIES_MAX];
 static bool is_watched;
+
+/* A rename, or with no `temporary` a removal, that waits for the end of the run. Texts are owned.
+ */
+struct waiting {
+    char *temporary, *path;
+};
+static struct {
+    bool is_asked;
+    struct waiting items[TEMPORARIES_MAX];
+    int count;
+} together;
 
 static void remove_temporaries(void)
 {
@@ -80,10 +91,29 @@ static void forget(const char *temporary)
     }
 }
 
-void hs_atomic_drop(const char *temporary)
+static void drop(const char *temporary)
 {
     unlink(temporary);
     forget(temporary);
+}
+
+static bool is_waiting(const char *temporary)
+{
+    for (int i = 0; i < together.count; i++) {
+        const char *name = together.items[i].temporary;
+        if (name && strcmp(name, temporary) == 0) {
+            return true;
+        }
+    }
+    return false;
+}
+
+/* One that waits has been handed over. */
+void hs_atomic_drop(const char *temporary)
+{
+    if (!is_waiting(temporary)) {
+        drop(temporary);
+    }
 }
 
 /* NULL when memory ran out. */
@@ -178,21 +208,115 @@ int hs_output_claim(const char *path)
     return result;
 }
 
-int hs_atomic_rename(const char *temporary, const char *path)
+static int put_in_place(const char *temporary, const char *path)
 {
-    if (check_place(path) != 0) {
-        hs_atomic_drop(temporary);
-        return -1;
-    }
     if (rename(temporary, path) == 0) {
         forget(temporary);
         hs_report_file(path);
         return 0;
     }
     const int cause = errno;
-    hs_atomic_drop(temporary);
+    drop(temporary);
     return hs_error(path, "choose another output name or folder", "cannot be put in place: %s",
                     strerror(cause));
+}
+
+static void free_waiting(struct waiting *item)
+{
+    free(item->temporary);
+    free(item->path);
+    *item = (struct waiting){NULL, NULL};
+}
+
+/* The last word about a path counts. `temporary` may be NULL. */
+static int wait_for_the_end(const char *temporary, const char *path)
+{
+    int i = 0;
+    while (i < together.count && strcmp(together.items[i].path, path) != 0) {
+        i++;
+    }
+    if (temporary) {
+        remember(temporary);
+    }
+    /* A file that is not watched would be left by a signal. */
+    if (i == TEMPORARIES_MAX || (temporary && slot_of(temporary) < 0)) {
+        return hs_error(path, "ask for fewer files", "is one file too many to be kept together");
+    }
+    if (i < together.count) {
+        free_waiting(&together.items[i]);
+    } else {
+        together.count++;
+    }
+    together.items[i] = (struct waiting){temporary ? strdup(temporary) : NULL, strdup(path)};
+    if (!together.items[i].path || (temporary && !together.items[i].temporary)) {
+        free_waiting(&together.items[i]);
+        together.items[i] = together.items[--together.count];
+        return hs_error(path, NULL, "out of memory");
+    }
+    return 0;
+}
+
+int hs_atomic_rename(const char *temporary, const char *path)
+{
+    if (check_place(path) != 0 || (together.is_asked && wait_for_the_end(temporary, path) != 0)) {
+        hs_atomic_drop(temporary);
+        return -1;
+    }
+    return together.is_asked ? 0 : put_in_place(temporary, path);
+}
+
+void hs_atomic_remove(const char *path)
+{
+    if (!together.is_asked) {
+        unlink(path);
+    } else if (access(path, F_OK) == 0) {
+        wait_for_the_end(NULL, path);
+    }
+}
+
+void hs_outputs_together(void)
+{
+    together.is_asked = true;
+}
+
+static int check_places(void)
+{
+    int result = 0;
+    for (int i = 0; i < together.count && result == 0; i++) {
+        result = check_place(together.items[i].path);
+    }
+    return result;
+}
+
+static int end_one(const struct waiting *item, bool is_good)
+{
+    if (item->temporary && is_good) {
+        return put_in_place(item->temporary, item->path);
+    }
+    if (item->temporary) {
+        drop(item->temporary);
+    } else if (is_good) {
+        unlink(item->path);
+    }
+    return 0;
+}
+
+int hs_outputs_end(bool is_good)
+{
+    sigset_t all, before;
+    sigfillset(&all);
+    sigprocmask(SIG_SETMASK, &all, &before);
+    int result = is_good ? check_places() : 0;
+    for (int i = 0; i < together.count; i++) {
+        if (end_one(&together.items[i], is_good && result == 0) != 0) {
+            result = -1;
+        }
+        free_waiting(&together.items[i]);
+    }
+    together.count = 0;
+    together.is_asked = false;
+    sigprocmask(SIG_SETMASK, &before, NULL);
+    return result;
 }
 
 int hs_atomic_open(struct hs_atomic_file *f, const char *path)

@@ -302,6 +302,9 @@ static int write_to_file(void)
 
 int hs_report_end(int exit_code)
 {
+    if (hs_outputs_end(exit_code == HS_EXIT_OK) != 0) {
+        exit_code = HS_EXIT_FAILED;
+    }
     if (!report.is_wanted) {
         return exit_code;
     }

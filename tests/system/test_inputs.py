@@ -298,6 +298,48 @@ def ctrl_c():
     return None
 
 
+# ---- Files that belong together: all of a run, or none.
+
+THERMAL = ["infrared", "--class-raster", "classes.tif", "--classes", TABLE, "--out"]
+TOGETHER = {"export": (["export", "area.lmdb", "--out"], "height.tif"), "infrared": (THERMAL, "infrared-1400.png")}
+
+
+def all_files(folder):
+    return {name: contents(os.path.join(folder, name)) if os.path.isfile(os.path.join(folder, name)) else None for name in os.listdir(folder)}
+
+
+for each, (lines, last) in TOGETHER.items():
+    @row("folder of an earlier run in which a file cannot be replaced", each, "refused")
+    def last_is_a_folder(words=lines, last=last, out="together-" + each):
+        done = db(*words, out)
+        assert done.code == 0 and last in os.listdir(out), done.err
+        shutil.rmtree(out)
+        os.makedirs(os.path.join(out, last))
+        with open(os.path.join(out, "class.tif"), "w") as file, open(os.path.join(out, "infrared-0400.tif"), "w") as other:
+            print("of the earlier run", file=file)
+            print("of the earlier run", file=other)
+        before = all_files(out)
+        done = db(*words, out)
+        assert all_files(out) == before, set(all_files(out)) - set(before)
+        return done
+
+
+@row("Ctrl-C when some files are finished", "infrared", "refused")
+def stopped_midway():
+    os.mkdir("midway")
+    hours = ",".join("%.2f" % (hour / 2) for hour in range(48))
+    work = subprocess.Popen([os.path.join(BUILD, "bin", "landmass-db")] + THERMAL + ["midway", "--hours", hours], stdout=subprocess.DEVNULL,
+                            stderr=subprocess.DEVNULL)
+    deadline = time.monotonic() + 60
+    while len(os.listdir("midway")) < 8 and time.monotonic() < deadline:
+        time.sleep(0.001)
+    seen = os.listdir("midway")
+    work.send_signal(signal.SIGINT)
+    assert work.wait(20) == -signal.SIGINT, "it did not end by the signal"
+    assert len(seen) >= 8 and not os.listdir("midway"), (seen, os.listdir("midway"))
+    return None
+
+
 # ---- Class numbers.
 
 def reordered():

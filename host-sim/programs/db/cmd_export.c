@@ -5,6 +5,7 @@
 #include "gis/class_raster.h"
 #include "gis/qgis.h"
 #include "gis/sensor_tag.h"
+#include "hs/atomic_file.h"
 #include "hs/error.h"
 #include "hs/options.h"
 #include "hs/output_path.h"
@@ -307,6 +308,7 @@ static int run(struct work *w)
 
 int db_cmd_export(int argc, char **argv)
 {
+    hs_outputs_together();
     struct settings settings = {0};
     const char *path = NULL;
     int exit_code;

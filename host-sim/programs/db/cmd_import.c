@@ -4,6 +4,7 @@
 #include "import.h"
 
 #include "gis/class_raster.h"
+#include "hs/atomic_file.h"
 #include "hs/error.h"
 #include "hs/input_file.h"
 #include "hs/report.h"
@@ -292,6 +293,7 @@ static int run(struct import *im)
 
 int db_cmd_import(int argc, char **argv)
 {
+    hs_outputs_together();
     struct import_options o = {.cdb = NULL};
     int exit_code;
     struct import *im = calloc(1, sizeof *im);

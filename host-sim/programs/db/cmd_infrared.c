@@ -9,6 +9,7 @@
 
 #include "gis/class_raster.h"
 #include "gis/preview.h"
+#include "hs/atomic_file.h"
 #include "hs/error.h"
 #include "hs/number.h"
 #include "hs/output_path.h"
@@ -460,6 +461,7 @@ static int run(struct work *w)
 
 int db_cmd_infrared(int argc, char **argv)
 {
+    hs_outputs_together();
     struct options options = {.month = 6,
                               .day = 21,
                               .latitude_deg = NAN,

@@ -3,6 +3,7 @@
 #include "source_options.h"
 
 #include "gis/qgis.h"
+#include "hs/atomic_file.h"
 #include "hs/error.h"
 #include "hs/output_path.h"
 
@@ -179,6 +180,7 @@ static int run(struct work *w)
 
 int db_cmd_qgis(int argc, char **argv)
 {
+    hs_outputs_together();
     struct options options = {0};
     int exit_code;
     struct work *w = calloc(1, sizeof *w);

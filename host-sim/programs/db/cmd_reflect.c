@@ -7,6 +7,7 @@
 #include "gis/class_raster.h"
 #include "gis/preview.h"
 #include "gis/sensor_tag.h"
+#include "hs/atomic_file.h"
 #include "hs/error.h"
 #include "hs/png.h"
 #include "hs/progress.h"
@@ -652,6 +653,7 @@ static const char *fault_of(const struct options *o, const char **option)
 
 int db_cmd_reflect(int argc, char **argv)
 {
+    hs_outputs_together();
     struct options options = {
         .seed = 1, .radar = {.unit = -1, .band = 1, .multilook = 3, .incidence_deg = NAN}};
     int exit_code;

@@ -11,6 +11,7 @@
 #include "gis/gdal_start.h"
 #include "gis/preview.h"
 #include "gis/sieve.h"
+#include "hs/atomic_file.h"
 #include "hs/error.h"
 #include "hs/png.h"
 #include "hs/progress.h"
@@ -527,6 +528,7 @@ static bool has_sense(const struct options *o)
 
 int db_cmd_segment(int argc, char **argv)
 {
+    hs_outputs_together();
     struct options options = {.known = {.field = "class"}, .square = 64, .sure = 0.5, .sieve = 60};
     int exit_code;
     struct work *w = calloc(1, sizeof *w);

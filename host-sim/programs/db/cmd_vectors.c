@@ -1,6 +1,7 @@
 #include "commands.h"
 
 #include "gis/class_raster.h"
+#include "hs/atomic_file.h"
 #include "hs/error.h"
 #include "hs/number.h"
 #include "hs/options.h"
@@ -305,6 +306,7 @@ static int work(struct job *j, const struct settings *s)
 
 int db_cmd_vectors(int argc, char **argv)
 {
+    hs_outputs_together();
     struct settings s = {.cell_m = 2};
     int exit_code;
     const bool goes_on = read_settings(&s, argc, argv, &exit_code);

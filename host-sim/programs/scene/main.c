@@ -1,4 +1,5 @@
 /* landmass-scene: the built-in scene, so that everything can be tried without anybody's data. */
+#include "hs/atomic_file.h"
 #include "hs/error.h"
 #include "hs/options.h"
 #include "hs/report.h"
@@ -134,6 +135,7 @@ static int run(const struct command *c)
 int main(int argc, char **argv)
 {
     hs_set_program("landmass-scene");
+    hs_outputs_together();
     struct command c;
     int exit_code;
     if (parse_command(&c, argc, argv, &exit_code)) {

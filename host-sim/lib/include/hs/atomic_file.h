@@ -6,6 +6,7 @@
 #ifndef HS_ATOMIC_FILE_H
 #define HS_ATOMIC_FILE_H
 
+#include <stdbool.h>
 #include <stdio.h>
 
 struct hs_atomic_file {
@@ -40,5 +41,19 @@ void hs_atomic_abort(struct hs_atomic_file *f);
 char *hs_atomic_temporary_name(const char *path);
 int hs_atomic_rename(const char *temporary, const char *path);
 void hs_atomic_drop(const char *temporary);
+
+/* Remove `path`, a file that belonged to one that is replaced. Harmless when there is none. */
+void hs_atomic_remove(const char *path);
+
+/* For commands whose files belong together: from here on what is committed, renamed or removed
+ * waits, with its errors of the disk reported at once, until hs_report_end. That puts all in place
+ * after a good run, and nothing after a bad one or a signal; only a kill between two renames or a
+ * failed rename can leave some. A file cannot be read back under its final name before. */
+void hs_outputs_together(void);
+
+/* The end of that, by hs_report_end: put all in place, or forget all. Harmless when nothing waits.
+ * Returns 0, or -1 with the error reported and nothing in place: `path` has become an input or no
+ * ordinary file; or some in place: a rename was refused. */
+int hs_outputs_end(bool is_good);
 
 #endif

@@ -55,8 +55,9 @@ bool hs_report_is_wanted(void);
 int hs_report_begin(const char *command, const char *path);
 int hs_report_claim(void);
 
-/* Write the report of a run that ends with `exit_code`. Returns the code to end with: the same, or
- * HS_EXIT_FAILED with the error reported when the report cannot be written. hs_menu_main calls it,
+/* End a run with `exit_code`: put the outputs in place that wait for it (hs_outputs_together), and
+ * write the report. Returns the code to end with: the same, or
+ * HS_EXIT_FAILED with the error reported when either cannot be written. hs_menu_main calls it,
  * and main where there are no commands. */
 int hs_report_end(int exit_code);
 

@@ -181,3 +181,59 @@ TEST(nothing_goes_into_a_folder_that_is_an_input)
     hs_input_forget(folder);
     leave(folder);
 }
+
+static void write_output(const char *path, const char *text)
+{
+    struct hs_atomic_file f;
+    assert_int_equal(hs_atomic_open(&f, path), 0);
+    fputs(text, f.stream);
+    assert_int_equal(hs_atomic_commit(&f), 0);
+}
+
+static void expect_text(const char *path, const char *wanted)
+{
+    char text[16] = "";
+    FILE *file = fopen(path, "r");
+    assert_non_null(file);
+    assert_non_null(fgets(text, sizeof text, file));
+    fclose(file);
+    assert_string_equal(text, wanted);
+}
+
+TEST(files_that_belong_together_come_at_the_end_or_not_at_all)
+{
+    char folder[] = "/tmp/landmass-test-XXXXXX";
+    enter(folder);
+    for (int is_good = 0; is_good < 2; is_good++) {
+        hs_outputs_together();
+        write_output("output", "first");
+        write_output("output", "output");
+        write_output("hard", "new");
+        hs_atomic_remove("link");
+        assert_int_equal(access("output", F_OK), -1);
+        assert_int_equal(access("link", F_OK), 0);
+        assert_int_equal(hs_outputs_end(is_good), 0);
+        assert_int_equal(access("output", F_OK), is_good - 1);
+        assert_int_equal(access("link", F_OK), -is_good);
+        expect_text("hard", is_good ? "new" : "input");
+    }
+    expect_text("output", "output");
+    write_output("output", "alone"); /* the next one does not wait */
+    expect_text("output", "alone");
+    leave(folder);
+}
+
+TEST(a_file_that_became_an_input_keeps_all_of_them_away)
+{
+    char folder[] = "/tmp/landmass-test-XXXXXX";
+    enter(folder);
+    hs_outputs_together();
+    write_output("output", "new");
+    write_output("input", "new");
+    hs_input_note("hard");
+    assert_int_equal(hs_outputs_end(true), -1);
+    assert_int_equal(access("output", F_OK), -1);
+    expect_text("input", "input");
+    hs_input_forget("input");
+    leave(folder);
+}
