@@ -23,6 +23,7 @@ struct reader {
     size_t next_option; /* where to look for the next argument that is no option */
     const char *json;   /* where the report goes, or NULL */
     struct hs_option json_option;
+    bool is_given[HS_OPTIONS_MAX]; /* by the command line, which a default is not */
 };
 
 static int usage_error(const struct hs_usage *usage, const char *option, const char *cause)
@@ -72,21 +73,72 @@ static int choice_of(const char *words, const char *text)
     return -1;
 }
 
+/* The last refusal, which names the range or the words; it is reported before the next. */
+static char refusal[256];
+
 static const char *store_number(const struct hs_option *o, const char *text)
 {
     double number = 0;
-    const bool is_within = hs_number_within(text, o->low, o->high, &number);
-    if (o->kind == HS_REAL) {
-        if (!is_within) {
-            return "needs a number within its range";
-        }
+    const bool is_whole = o->kind == HS_INTEGER;
+    if (!hs_number_within(text, o->low, o->high, &number) ||
+        (is_whole && number != (double)(long)number)) {
+        snprintf(refusal, sizeof refusal, "needs a %snumber from %.12g to %.12g",
+                 is_whole ? "whole " : "", o->low, o->high);
+        return refusal;
+    }
+    if (is_whole) {
+        *(long *)o->target = (long)number;
+    } else {
         *(double *)o->target = number;
-        return NULL;
     }
-    if (!is_within || number != (double)(long)number) {
-        return "needs a whole number within its range";
+    return NULL;
+}
+
+/* "tanh or sigmoid". An argument, in capitals, has no dashes. */
+static void append_words(char *text, size_t size, const char *words, const char *dashes)
+{
+    while (*words) {
+        const size_t length = strcspn(words, "|"), used = strlen(text);
+        const char *rest = words + length + (words[length] == '|');
+        const bool is_argument = *words >= 'A' && *words <= 'Z';
+        snprintf(text + used, size - used, "%s%.*s%s", is_argument ? "" : dashes, (int)length,
+                 words,
+                 *rest == '\0'       ? ""
+                 : strchr(rest, '|') ? ", "
+                                     : " or ");
+        words = rest;
     }
-    *(long *)o->target = (long)number;
+}
+
+const char *hs_options_words(const char *words)
+{
+    snprintf(refusal, sizeof refusal, "needs ");
+    append_words(refusal, sizeof refusal, words, "");
+    return refusal;
+}
+
+/* "map|method=adjust": "needs --map or --method adjust" */
+void hs_options_row_text(const struct hs_option *row, char *text, size_t size)
+{
+    const bool needs = row->kind == HS_NEEDS;
+    snprintf(text, size, "%s ", needs ? "needs" : "cannot be given together with");
+    append_words(text, size, row->value_name, "--");
+    for (char *c = text; *c; c++) {
+        *c = *c == '=' ? ' ' : *c;
+    }
+}
+
+static const char *store_choice(const struct hs_option *o, const char *text)
+{
+    const int choice = choice_of(o->value_name, text);
+    if (choice < 0) {
+        return hs_options_words(o->value_name);
+    }
+    if (o->kind == HS_WORD) {
+        *(const char **)o->target = text;
+    } else {
+        *(int *)o->target = choice;
+    }
     return NULL;
 }
 
@@ -112,13 +164,15 @@ static const char *store(const struct hs_option *o, const char *text)
     case HS_INTEGER:
         return store_number(o, text);
     case HS_CHOICE:
-        *(int *)o->target = choice_of(o->value_name, text);
-        return *(int *)o->target >= 0 ? NULL : "needs one of its words";
+    case HS_WORD:
+        return store_choice(o, text);
     case HS_TAKER: {
         const struct hs_taker *taker = o->target;
         return taker->take(taker->context, text);
     }
     case HS_HEADING:
+    case HS_NEEDS:
+    case HS_CLASHES:
         break;
     }
     return "is not understood";
@@ -126,7 +180,7 @@ static const char *store(const struct hs_option *o, const char *text)
 
 static bool is_option(const struct hs_option *o)
 {
-    return !hs_is_argument(o) && o->kind != HS_HEADING;
+    return !hs_is_argument(o) && !hs_is_remark(o);
 }
 
 static const struct hs_option *find(const struct reader *r, const char *name, size_t length)
@@ -141,9 +195,12 @@ static const struct hs_option *find(const struct reader *r, const char *name, si
     return strlen(json) == length && strncmp(json, name, length) == 0 ? &r->json_option : NULL;
 }
 
-static int store_or_report(const struct reader *r, const struct hs_option *o, const char *text)
+static int store_or_report(struct reader *r, const struct hs_option *o, const char *text)
 {
     const char *wrong = store(o, text);
+    if (o != &r->json_option) {
+        r->is_given[o - r->options] = true;
+    }
     if (!wrong) {
         return 0;
     }
@@ -240,10 +297,75 @@ static int check_required(const struct reader *r)
 {
     for (size_t i = 0; i < r->count; i++) {
         const struct hs_option *o = &r->options[i];
-        if (o->kind != HS_HEADING && o->is_required && !is_given(o)) {
+        if (!hs_is_remark(o) && o->is_required && !is_given(o)) {
             char name[64];
             snprintf(name, sizeof name, "%s%s", is_option(o) ? "--" : "", o->name);
             return usage_error(r->usage, name, "is required");
+        }
+    }
+    return 0;
+}
+
+static const struct hs_option *named(const struct reader *r, const char *name, size_t length)
+{
+    for (size_t i = 0; i < r->count; i++) {
+        const struct hs_option *o = &r->options[i];
+        if (!hs_is_remark(o) && strlen(o->name) == length && strncmp(o->name, name, length) == 0) {
+            return o;
+        }
+    }
+    return NULL;
+}
+
+static bool has_word(const struct hs_option *o, const char *word)
+{
+    const char *text = o->kind == HS_WORD ? *(const char **)o->target : NULL;
+    return o->kind == HS_WORD ? text && strcmp(text, word) == 0
+                              : choice_of(o->value_name, word) == *(const int *)o->target;
+}
+
+/* Whether one of `others` (HS_NEEDS_ROW) is so. */
+static bool is_any(const struct reader *r, const char *others)
+{
+    while (*others) {
+        const size_t length = strcspn(others, "|"), name = strcspn(others, "|=");
+        const struct hs_option *o = named(r, others, name);
+        if (!o) {
+            abort(); /* a row that names no option of its table */
+        }
+        char word[32];
+        snprintf(word, sizeof word, "%.*s", (int)(length - name), others + name);
+        if (length == name ? r->is_given[o - r->options] : has_word(o, word + 1)) {
+            return true;
+        }
+        others += length + (others[length] == '|');
+    }
+    return false;
+}
+
+static int check_row(const struct reader *r, const struct hs_option *row)
+{
+    const struct hs_option *o = named(r, row->name, strlen(row->name));
+    if (!o) {
+        abort(); /* likewise */
+    }
+    const bool is_met = is_any(r, row->value_name) == (row->kind == HS_NEEDS);
+    if (is_met || !r->is_given[o - r->options]) {
+        return 0;
+    }
+    char place[64], cause[256];
+    snprintf(place, sizeof place, "%s%s", is_option(o) ? "--" : "", o->name);
+    hs_options_row_text(row, cause, sizeof cause);
+    return usage_error(r->usage, place, cause);
+}
+
+/* Options that would have no effect, or opposite ones. */
+static int check_rows(const struct reader *r)
+{
+    for (size_t i = 0; i < r->count; i++) {
+        const struct hs_option *row = &r->options[i];
+        if ((row->kind == HS_NEEDS || row->kind == HS_CLASHES) && check_row(r, row) != 0) {
+            return -1;
         }
     }
     return 0;
@@ -258,7 +380,11 @@ bool hs_options_read(const struct hs_usage *usage, const struct hs_option *optio
             return false;
         }
     }
-    struct reader r = {usage, options, count, argc, argv, 1, 0, NULL, {0}};
+    if (count > HS_OPTIONS_MAX) {
+        abort();
+    }
+    struct reader r = {
+        .usage = usage, .options = options, .count = count, .argc = argc, .argv = argv, .next = 1};
     r.json_option = hs_json_option(&r.json);
     *exit_code = HS_EXIT_USAGE;
     while (r.next < argc) {
@@ -266,7 +392,7 @@ bool hs_options_read(const struct hs_usage *usage, const struct hs_option *optio
             return false;
         }
     }
-    if (check_required(&r) != 0) {
+    if (check_required(&r) != 0 || check_rows(&r) != 0) {
         return false;
     }
     *exit_code = HS_EXIT_FAILED;

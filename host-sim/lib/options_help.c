@@ -77,7 +77,7 @@ static void print_paragraphs(const char *text, int indent)
 
 static bool is_in_synopsis(const struct hs_option *o)
 {
-    return hs_is_argument(o) || (o->is_required && o->kind != HS_HEADING);
+    return hs_is_argument(o) || (o->is_required && !hs_is_remark(o));
 }
 
 /* "landmass-db segment --classes FILE IMAGE [options]", each word framed by what the form wants. */
@@ -109,6 +109,19 @@ static void print_plain(const char *text)
     fputs(text, stdout);
 }
 
+/* What the rows that follow say of an option: "Needs --map." */
+static void print_rows(const struct table *t, const struct hs_option *o, const char *indent)
+{
+    for (size_t i = 0; i < t->count; i++) {
+        const struct hs_option *row = &t->options[i];
+        if ((row->kind == HS_NEEDS || row->kind == HS_CLASHES) && strcmp(row->name, o->name) == 0) {
+            char text[256];
+            hs_options_row_text(row, text, sizeof text);
+            printf("%s%c%s.\n", indent, text[0] - 'a' + 'A', text + 1);
+        }
+    }
+}
+
 /* "Range 1 to 89; default 25." in one line, or nothing. */
 static void print_range(const struct hs_option *o, const char *indent)
 {
@@ -124,11 +137,16 @@ static void print_range(const struct hs_option *o, const char *indent)
             word += strcspn(word, "|") + 1;
         }
         printf("%sDefault %.*s.\n", indent, (int)strcspn(word, "|"), word);
+    } else if (o->kind == HS_WORD && *(const char **)o->target) {
+        printf("%sDefault %s.\n", indent, *(const char **)o->target);
     }
 }
 
-static void print_option(const struct hs_option *o)
+static void print_option(const struct table *t, const struct hs_option *o)
 {
+    if (o->kind == HS_NEEDS || o->kind == HS_CLASHES) {
+        return;
+    }
     if (o->kind == HS_HEADING) {
         printf("\n%s%s", o->name ? o->name : "", o->name ? ":\n" : "");
         print_paragraphs(o->help, 0);
@@ -139,6 +157,7 @@ static void print_option(const struct hs_option *o)
            has_value ? o->value_name : "", o->is_required ? "  (required)" : "");
     print_paragraphs(o->help, 6);
     print_range(o, "      ");
+    print_rows(t, o, "      ");
 }
 
 static void print_help(const struct table *t)
@@ -151,16 +170,19 @@ static void print_help(const struct table *t)
     print_paragraphs(t->usage->description, 0);
     printf("\nOptions:\n");
     for (size_t i = 0; i < t->count; i++) {
-        print_option(&t->options[i]);
+        print_option(t, &t->options[i]);
     }
     printf("%s", t->count > 0 && t->options[t->count - 1].kind == HS_HEADING ? "\n" : "");
     const struct hs_option json = hs_json_option(NULL);
-    print_option(&json);
+    print_option(t, &json);
     printf("  -h, --help[=man|list]\n      %s\n  --version\n      %s\n", help_help, version_help);
 }
 
-static void print_manual_option(const struct hs_option *o)
+static void print_manual_option(const struct table *t, const struct hs_option *o)
 {
+    if (o->kind == HS_NEEDS || o->kind == HS_CLASHES) {
+        return;
+    }
     if (o->kind == HS_HEADING) {
         printf(".SS ");
         manual_text(o->name ? o->name : "Remarks");
@@ -179,6 +201,7 @@ static void print_manual_option(const struct hs_option *o)
     printf("\n");
     manual_filled(o->help);
     print_range(o, "");
+    print_rows(t, o, "");
 }
 
 static void print_manual(const struct table *t)
@@ -194,15 +217,32 @@ static void print_manual(const struct table *t)
     manual_paragraphs(t->usage->description);
     printf(".SH OPTIONS\n");
     for (size_t i = 0; i < t->count; i++) {
-        print_manual_option(&t->options[i]);
+        print_manual_option(t, &t->options[i]);
     }
     const struct hs_option json = hs_json_option(NULL);
-    print_manual_option(&json);
+    print_manual_option(t, &json);
     printf(".TP\n\\fB\\-h\\fR, \\fB\\-\\-help\\fR[=\\fIman|list\\fR]\n");
     manual_filled(help_help);
     printf(".TP\n\\fB\\-\\-version\\fR\n");
     manual_filled(version_help);
     manual_exit_status();
+}
+
+/* Of words between bars those in small letters, which are not place holders; "" for none. Borrowed
+ * until the next call. */
+static const char *small_words(const char *value)
+{
+    static char words[256];
+    words[0] = '\0';
+    for (const char *word = value; word && *word;) {
+        const size_t length = strcspn(word, "|"), used = strlen(words);
+        if (strspn(word, "abcdefghijklmnopqrstuvwxyz0123456789-") == length) {
+            snprintf(words + used, sizeof words - used, "%s%.*s", used > 0 ? "|" : "", (int)length,
+                     word);
+        }
+        word += length + (word[length] == '|');
+    }
+    return words;
 }
 
 /* What the shell may complete a value from. */
@@ -217,10 +257,10 @@ static const char *source_of(const struct hs_option *o)
         return "file";
     case HS_FOLDER:
         return "folder";
-    case HS_CHOICE:
-        return o->value_name;
-    default:
+    case HS_FLAG:
         return "";
+    default:
+        return small_words(o->value_name);
     }
 }
 
@@ -237,7 +277,7 @@ static void print_list(const struct table *t)
         const struct hs_option *o = &t->options[i];
         if (hs_is_argument(o)) {
             printf("\t%s\t%s\n", o->name, source_of(o));
-        } else if (o->kind != HS_HEADING) {
+        } else if (!hs_is_remark(o)) {
             print_list_line(o);
         }
     }

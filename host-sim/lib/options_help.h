@@ -10,6 +10,15 @@ static inline bool hs_is_argument(const struct hs_option *o)
     return o->kind == HS_INPUT_ARGUMENT || o->kind == HS_OUTPUT_ARGUMENT;
 }
 
+/* A row that is no option and no argument. */
+static inline bool hs_is_remark(const struct hs_option *o)
+{
+    return o->kind == HS_HEADING || o->kind == HS_NEEDS || o->kind == HS_CLASHES;
+}
+
+/* What a row of HS_NEEDS or HS_CLASHES asks: "needs --map". */
+void hs_options_row_text(const struct hs_option *row, char *text, size_t size);
+
 /* The option that every command has besides its own: the file of its report (hs/report.h). */
 struct hs_option hs_json_option(const char **path);
 

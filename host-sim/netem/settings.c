@@ -45,8 +45,7 @@ void nm_target_options(struct nm_settings *s, struct hs_option *o)
          "amplitude of a cell that returns everything; 0: the root of its radar cross section in\n"
          "m^2, as calibrated MSTAR chips have it",
          false},
-        {"law", HS_TEXT, &t->law, 0, 0, "NAME",
-         "of the simulator before training: raysar, fresnel-hh, fresnel-vv, spm-hh or spm-vv",
+        {"law", HS_WORD, &t->law, 0, 0, REFLECT_KIND_WORDS, "of the simulator before training",
          false},
         {"materials", HS_INPUT, &t->materials, 0, 0, "FILE",
          "surfaces by name, in the form that `landmass-target materials` prints", false},
@@ -84,10 +83,10 @@ void nm_chip_options(struct nm_settings *s, struct hs_option *o)
 void nm_train_options(struct nm_settings *s, struct hs_option *o)
 {
     const struct hs_option options[NM_TRAIN_OPTIONS] = {
-        {"architecture", HS_TEXT, &s->architecture, 0, 0, "EP1..EP8",
-         "Tables III and IV; default EP8: a network for each direction, 16-32-64-32-32-1", false},
-        {"loss", HS_TEXT, &s->loss, 0, 0, "mse|mae", "(14), the default, or (13)", false},
-        {"method", HS_TEXT, &s->method, 0, 0, "adam|sgd", "of descent; default adam", false},
+        {"architecture", HS_WORD, &s->architecture, 0, 0, "EP1|EP2|EP3|EP4|EP5|EP6|EP7|EP8",
+         "Tables III and IV; EP8: a network for each direction, 16-32-64-32-32-1", false},
+        {"loss", HS_WORD, &s->loss, 0, 0, "mse|mae", "mse: (14); mae: (13)", false},
+        {"method", HS_WORD, &s->method, 0, 0, "adam|sgd", "of descent", false},
         {"rate", HS_REAL, &s->rate, 1e-9, 1e3, "R", "of the reflection networks", false},
         {"pix-rate", HS_REAL, &s->pix_rate, 1e-9, 1e3, "R", "of the pixels' kernels", false},
         {"momentum", HS_REAL, &s->momentum, 0, 0.999, "M", "of sgd", false},

@@ -39,7 +39,7 @@ void setup_model_options(struct setup *s, struct hs_option *o)
          "a built-in model (see `landmass-target model --help`) or a file: OBJ, glTF, STL, PLY, "
          "Collada, OpenFlight",
          true},
-        {"up", HS_TEXT, &s->up, 0, 0, "y|z",
+        {"up", HS_WORD, &s->up, 0, 0, "y|z",
          "which axis of FILE points up, where its format does not say it; default y, and x ahead "
          "in either case",
          false},
@@ -88,8 +88,7 @@ void setup_trace_options(struct setup *s, struct hs_option *o)
 void setup_law_options(struct setup *s, struct hs_option *o)
 {
     const struct hs_option options[SETUP_LAW_OPTIONS] = {
-        {"law", HS_TEXT, &s->law, 0, 0, "NAME",
-         "of reflection: raysar (default), fresnel-hh, fresnel-vv, spm-hh or spm-vv", false},
+        {"law", HS_WORD, &s->law, 0, 0, REFLECT_KIND_WORDS, "of reflection", false},
         {"materials", HS_INPUT, &s->materials, 0, 0, "FILE",
          "surfaces by name, in the form that `landmass-target materials` prints", false},
     };

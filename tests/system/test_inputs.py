@@ -147,6 +147,7 @@ BUILD_AREA = ["build", "--classes", "heaton6.classes", "--class-raster", "classe
 TRAIN = ["train", "--image", "image.tif", "--classes", "heaton6.classes", "--exemplars", "fields.geojson", "--epochs", "20"]
 SEGMENT = ["segment", "--image", "image.tif", "--classes", "heaton6.classes", "--net", "scene.net"]
 REFLECT = ["reflect", "--class-raster", "classes.tif", "--classes", "heaton6.classes"]
+THERMAL = ["infrared", "--class-raster", "classes.tif", "--classes", TABLE, "--out"]
 CORRECT = ["correct", "--class-raster", "classes.tif", "--classes", "heaton6.classes", "--corrections", "fields.geojson"]
 
 
@@ -298,9 +299,75 @@ def ctrl_c():
     return None
 
 
+# ---- Options that would be ignored.
+
+IGNORED = [
+    (REFLECT + ["--out", "no.tif"], ["image image.tif", "bands 1", "calibrate scene", "multilook 3", "trust-inputs"]),
+    (["build", "--classes", TABLE, "--terrain", "dem.tif", "--out", "no.lmdb"],
+     ["class-numbers", "map dem.tif", "steep-degrees 30", "geoid 45 --geoid-grid egm96"]),
+    (["build", "--classes", TABLE, "--class-raster", "classes.tif", "--flat", "--out", "no.lmdb"],
+     ["terrain-unit ft", "terrain-datum msl", "land-class soil", "voids-are-sea"]),
+    (SEGMENT + ["--out", "no.tif"], ["picture-bands 1,2,3", "square 8", "field class", "sure 0.9"]),
+    (TRAIN + ["--net", "no.net"], ["labels classes.tif"]),
+    (THERMAL + ["no"], ["shadows", "heights dem.tif", "trust-inputs"]),
+    (["picture", "area.lmdb", "--out", "no.png", "--plane", "class"], ["white 9", "black -30 --white 0"]),
+]
+for given, options in IGNORED:
+    for option in options:
+        @row("`--%s` which would be ignored" % option.replace(" --", "` and `--") , given[0], "refused")
+        def is_ignored(words=given, option=option):
+            done = db(*words, *("--" + option).split())
+            assert done.code == 2 and not os.path.exists("no.tif") and not os.path.exists("no.lmdb"), done.err
+            return done
+
+
+@row("`--speed 100` beside `--circle`", "landmass-nav", "refused")
+def speed_of_a_circle():
+    return tool("nav", "--circle", "46,7,9000,3000,150", "--speed", "100", "--out", "no.log")
+
+
+@row("`--profile` beside a `--table` of one's own", "landmass-bus", "refused")
+def profile_and_table():
+    return tool("bus", "table", "--profile", "canas17", "--table", "image.tif")
+
+
+@row("`--start 5` without a log", "landmass-sim", "refused")
+def start_of_nothing():
+    return tool("sim", "--db", "area.lmdb", "--start", "5", "--seconds", "1")
+
+
+# ---- Words and numbers that an option does not take.
+
+for words, said in ((["picture", "area.lmdb", "--plane", "hight", "--out", "no.png"], "needs reflectivity, class, elevation, height or shade"),
+                    (TRAIN + ["--net", "no.net", "--loss", "cubic"], "needs square or cross-entropy"),
+                    (THERMAL + ["no", "--date", "02-30"], "names a day that its month has not"),
+                    (THERMAL + ["no", "--hours", "25"], "`25` is no hour"),
+                    (THERMAL + ["no", "--wind", "-3"], "needs a number from 0 to 40")):
+    @row("`%s`" % " ".join(words[-2:] if "--out" not in words[-2:] else words[2:4]), words[0], "refused")
+    def is_no_word(words=words, said=said):
+        done = db(*words)
+        assert done.code == 2 and said in done.err, done.err
+        return done
+
+
+@row("`--date 02-29`", "infrared", "done")
+def leap_day():
+    done = db(*THERMAL, "leap", "--date", "02-29", "--hours", "12")
+    assert "day 60 of the year" in done.out, done.out
+    return done
+
+
+@row("a table as text to print", "landmass-radar", "refused")
+def print_a_text():
+    with open("own.radar", "w") as file:
+        file.write(tool("radar", "print").out)
+    done = tool("radar", "print", "own.radar")
+    assert "is a text already" in done.err, done.err
+    return done
+
+
 # ---- Files that belong together: all of a run, or none.
 
-THERMAL = ["infrared", "--class-raster", "classes.tif", "--classes", TABLE, "--out"]
 TOGETHER = {"export": (["export", "area.lmdb", "--out"], "height.tif"), "infrared": (THERMAL, "infrared-1400.png")}
 
 

@@ -93,6 +93,7 @@ static bool read_options(struct command *c, const struct hs_usage *usage, int ar
          "a text table instead of a built-in profile; docs/bus.md explains it", false},
         {"out", HS_OUTPUT, &c->out_path, 0, 0, "FILE",
          "where the text goes; left out: standard output", false},
+        HS_CLASHES_ROW("profile", "table"),
         {"LOG", HS_INPUT_ARGUMENT, &c->log_path, 0, 0, NULL,
          "of candump -L; left out: standard input", false},
     };

@@ -77,9 +77,8 @@ static bool read_settings(struct settings *s, int argc, char **argv, int *exit_c
         OPTION("terrain-unit", HS_TEXT, terrain_unit, 0, 0, "UNIT",
                "of all terrain: m, cm, ft (international), us-ft ...; left out: as the files say, "
                "or m"),
-        OPTION("terrain-datum", HS_TEXT, terrain_datum, 0, 0, "NAME",
-               "what heights of all terrain are above: msl, egm96, egm2008 or ellipsoid;\nleft "
-               "out: as the files say, or msl"),
+        OPTION("terrain-datum", HS_WORD, terrain_datum, 0, 0, "msl|egm96|egm2008|ellipsoid",
+               "what heights of all terrain are above; left out: as the files say, or msl"),
         OPTION("class-raster", HS_INPUT, class_raster, 0, 0, "FILE",
                "class of each pixel, 255: no data"),
         OPTION("class-numbers", HS_FLAG, ignores_names, 0, 0, NULL,
@@ -143,6 +142,23 @@ static bool read_settings(struct settings *s, int argc, char **argv, int *exit_c
         OPTION("geoid-grid", HS_INPUT, geoid_grid, 0, 0, "egm96|FILE",
                "its height at each place instead: egm96, which PROJ has, or a raster of metres"),
         OPTION("seed", HS_INTEGER, seed, 0, 4294967295.0, "N", "of the reflectivity's random part"),
+        HS_CLASHES_ROW("flat", "terrain"),
+        HS_NEEDS_ROW("flat", "class-raster"),
+        HS_NEEDS_ROW("terrain-unit", "terrain"),
+        HS_NEEDS_ROW("terrain-datum", "terrain"),
+        HS_NEEDS_ROW("class-numbers", "class-raster"),
+        HS_CLASHES_ROW("class-numbers", "map"),
+        HS_NEEDS_ROW("map", "class-raster"),
+        HS_NEEDS_ROW("unknown-codes", "map"),
+        HS_NEEDS_ROW("reflectivity", "class-raster"),
+        HS_NEEDS_ROW("heights", "class-raster"),
+        HS_CLASHES_ROW("shift0", "cell"),
+        HS_NEEDS_ROW("land-class", "terrain"),
+        HS_NEEDS_ROW("water-class", "terrain"),
+        HS_NEEDS_ROW("voids-are-sea", "terrain"),
+        HS_NEEDS_ROW("steep-class", "terrain"),
+        HS_NEEDS_ROW("steep-degrees", "steep-class"),
+        HS_CLASHES_ROW("geoid", "geoid-grid"),
     };
     return hs_options_read(&usage, options, sizeof options / sizeof options[0], argc, argv,
                            exit_code);
@@ -165,44 +181,16 @@ static int parse_centre(const char *text, uint32_t centre[2])
     return 0;
 }
 
-static bool is_datum(const char *name)
-{
-    return strcmp(name, "msl") == 0 || strcmp(name, "egm96") == 0 || strcmp(name, "egm2008") == 0 ||
-           strcmp(name, "ellipsoid") == 0;
-}
-
 static int check_settings(struct settings *s)
 {
-    if (s->cell_m > 0 && s->shift0 > 0) {
-        return usage_error("--shift0", "cannot be given together with --cell");
-    }
     if (s->shift0 > 0 && s->shift0 < LM_DB_SHIFT_MIN) {
         return usage_error("--shift0", "must be 4 to 20");
     }
     if (s->title && strlen(s->title) > LM_IMAGE_TITLE_BYTES) {
         return usage_error("--title", "is longer than 32 bytes");
     }
-    if (!s->class_raster && (s->reflectivity || s->heights)) {
-        return usage_error(s->reflectivity ? "--reflectivity" : "--heights",
-                           "needs --class-raster");
-    }
-    if (s->is_flat && (s->terrain.count > 0 || !s->class_raster)) {
-        return usage_error("--flat", "needs --class-raster, and no --terrain");
-    }
     if (!s->is_flat && s->terrain.count == 0) {
         return usage_error("--terrain", "is missing; --flat puts all ground at sea level");
-    }
-    if (s->map && !s->class_raster) {
-        return usage_error("--map", "needs --class-raster");
-    }
-    if (s->unknown_codes && !s->map) {
-        return usage_error("--unknown-codes", "needs --map");
-    }
-    if (s->geoid_grid && s->geoid_m != 0) {
-        return usage_error("--geoid", "cannot be given together with --geoid-grid");
-    }
-    if (s->terrain_datum && !is_datum(s->terrain_datum)) {
-        return usage_error("--terrain-datum", "must be msl, egm96, egm2008 or ellipsoid");
     }
     return s->centre ? parse_centre(s->centre, s->centre_bam) : 0;
 }

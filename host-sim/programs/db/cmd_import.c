@@ -56,10 +56,10 @@ static bool read_options(struct import_options *o, int argc, char **argv, int *e
         OPTION("model", HS_INPUTS, models, "FILE",
                "A model; may be repeated: all share one origin."),
         OPTION("cdb", HS_TEXT, cdb, "FOLDER", "Instead: the folder of a CDB that holds Tiles."),
-        OPTION("unit", HS_TEXT, unit, "NAME",
-               "m, cm, mm, ft, us-ft or in: a model's unit, where its format has none (OBJ)."),
-        OPTION("up", HS_TEXT, up, "AXIS",
-               "y or z: what is up, where the format does not say it. With y up, north is -z."),
+        OPTION("unit", HS_WORD, unit, "m|cm|mm|ft|us-ft|in",
+               "A model's unit, where its format has none (OBJ)."),
+        OPTION("up", HS_WORD, up, "y|z",
+               "What is up, where the format does not say it. With y up, north is -z."),
         OPTION("at", HS_TEXT, at, "LAT,LON[,H]",
                "Where the models' origin lies, degrees, and its height in metres. The output is "
                "in a\n"
@@ -92,6 +92,19 @@ static bool read_options(struct import_options *o, int argc, char **argv, int *e
                "Metres of the ground, for build --terrain."),
         OPTION("out-heights", HS_OUTPUT, heights, "FILE",
                "Metres of what stands on it, for build --heights."),
+        HS_CLASHES_ROW("model", "cdb"),
+        HS_NEEDS_ROW("unit", "model"),
+        HS_NEEDS_ROW("up", "model"),
+        HS_NEEDS_ROW("at", "model"),
+        HS_CLASHES_ROW("at", "crs"),
+        HS_NEEDS_ROW("crs", "model"),
+        HS_NEEDS_ROW("origin", "crs"),
+        HS_NEEDS_ROW("area", "cdb"),
+        HS_NEEDS_ROW("boxes", "cdb"),
+        HS_NEEDS_ROW("classes", "map"),
+        HS_NEEDS_ROW("map", "classes"),
+        HS_NEEDS_ROW("out-classes", "map"),
+        HS_NEEDS_ROW("out-top", "model"),
     };
     return hs_options_read(&usage, table, sizeof table / sizeof table[0], argc, argv, exit_code);
 }
@@ -106,8 +119,10 @@ void import_warn_lost(const struct import *im, uint32_t count, const char *first
 {
     if (count > 0) {
         hs_warn(im->place, "put them where the model looks for them",
-                "%u textures are missing, `%s` the first; plain colours stand for them", count,
-                first);
+                count == 1
+                    ? "%u texture is missing: `%s`; plain colour stands for it"
+                    : "%u textures are missing, `%s` the first; plain colours stand for them",
+                count, first);
     }
 }
 
@@ -125,24 +140,11 @@ static int check_options(const struct import_options *o)
     if (!o->image && !o->mask && !o->class_raster && !o->top && !is_split) {
         return usage_error("--out-image", "no output is named");
     }
-    if ((o->classes != NULL) != (o->map != NULL)) {
-        return usage_error("--map", "goes together with --classes");
-    }
-    if (o->class_raster && !o->map) {
-        return usage_error("--out-classes", "needs --classes and --map");
-    }
     if (o->models.count > 0 && is_split && !o->map) {
         return usage_error("--out-terrain",
                            "needs --classes and --map, to know which materials are ground");
     }
-    if (o->cdb && (o->at || o->crs || o->origin || o->unit || o->up || o->top)) {
-        return usage_error("--cdb",
-                           "has its own coordinates: leave out --at, --crs, --origin, "
-                           "--unit, --up and --out-top");
-    }
-    return o->models.count > 0 && (o->area || o->boxes)
-               ? usage_error("--area", "--area and --boxes are for a --cdb")
-               : 0;
+    return 0;
 }
 
 static int read_tables(struct import *im)

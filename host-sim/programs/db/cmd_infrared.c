@@ -92,16 +92,18 @@ struct shot {
     double sum[DB_CLASS_MAX], count[DB_CLASS_MAX];
 };
 
+/* Of a year of 365 days: 29 February is its 1 March. */
 static const int month_days[12] = {31, 28, 31, 30, 31, 30, 31, 31, 30, 31, 30, 31};
 
 static const char *take_date(void *context, const char *text)
 {
     struct options *o = context;
     char end;
-    return sscanf(text, "%2d-%2d%c", &o->month, &o->day, &end) == 2 && o->month >= 1 &&
-                   o->month <= 12 && o->day >= 1 && o->day <= month_days[o->month - 1]
-               ? NULL
-               : "needs a month and a day, MM-DD";
+    if (sscanf(text, "%2d-%2d%c", &o->month, &o->day, &end) != 2 || o->month < 1 || o->month > 12) {
+        return "needs a month and a day, MM-DD";
+    }
+    const int days = month_days[o->month - 1] + (o->month == 2);
+    return o->day >= 1 && o->day <= days ? NULL : "names a day that its month has not";
 }
 
 static int day_of_year(const struct options *o)
@@ -152,10 +154,14 @@ static bool read_options(struct options *o, int argc, char **argv, int *exit_cod
          false},
         {"seed", HS_INTEGER, &o->seed, 0, 2147483647, "N",
          "Seed of the differences within a class, as that of `reflect`.", false},
+        HS_NEEDS_ROW("shadows", "terrain|heights"),
+        HS_NEEDS_ROW("heights", "shadows"),
+        HS_NEEDS_ROW("trust-inputs", "terrain|heights"),
     };
     return hs_options_read(&usage, table, sizeof table / sizeof table[0], argc, argv, exit_code);
 }
 
+/* Returns 0, or -1 with the error reported. */
 static int take_hours(struct work *w)
 {
     static const double usual[] = {4, 14};
@@ -241,7 +247,7 @@ static int open_shadows(struct work *w)
 static int prepare(struct work *w)
 {
     const struct options *o = w->options;
-    if (take_hours(w) != 0 || db_class_table_read(&w->table, o->classes) != 0 ||
+    if (db_class_table_read(&w->table, o->classes) != 0 ||
         db_class_table_choose(&w->table, o->classes, HS_SENSOR_IR) != 0 ||
         db_class_raster_open(&w->classes, &w->numbers, o->class_raster, &w->table,
                              o->ignores_names) != 0 ||
@@ -479,12 +485,7 @@ int db_cmd_infrared(int argc, char **argv)
     }
     w->options = &options;
     if (read_options(&options, argc, argv, &exit_code)) {
-        exit_code = options.has_shadows && !options.terrain && !options.heights
-                        ? hs_options_wrong(&usage, "--shadows",
-                                           "needs what casts them: --terrain or --heights")
-                    : options.heights && !options.has_shadows
-                        ? hs_options_wrong(&usage, "--heights", "casts shadows: add --shadows")
-                        : run(w);
+        exit_code = take_hours(w) == 0 ? run(w) : HS_EXIT_USAGE;
     }
     free(w->values);
     free(w->radiance);

@@ -29,11 +29,8 @@ static bool read_settings(struct settings *s, int argc, char **argv, const char 
 {
     const struct hs_option options[] = {
         {"FILE", HS_INPUT_ARGUMENT, path, 0, 0, NULL, "the database image", true},
-        {"plane", HS_TEXT, &s->plane, 0, 0, "NAME",
-         "reflectivity, class, elevation, height (of structures and trees) or\nshade (hills lit "
-         "from the "
-         "north-west)",
-         true},
+        {"plane", HS_WORD, &s->plane, 0, 0, "reflectivity|class|elevation|height|shade",
+         "height: of structures and trees; shade: hills lit from the north-west", true},
         {"out", HS_OUTPUT, &s->out, 0, 0, "P.png", "the picture", true},
         {"level", HS_INTEGER, &s->level, -1, LM_DB_LODS_MAX - 1, "L",
          "level of detail; -1: the finest that fits the picture", false},
@@ -43,6 +40,9 @@ static bool read_settings(struct settings *s, int argc, char **argv, const char 
         {"black", HS_REAL, &s->black, -10000, 10000, "VALUE",
          "dB or metres that are drawn black; equal to --white: from the picture itself", false},
         {"white", HS_REAL, &s->white, -10000, 10000, "VALUE", "likewise white", false},
+        HS_NEEDS_ROW("black", "white"),
+        HS_NEEDS_ROW("white", "black"),
+        HS_CLASHES_ROW("black", "plane=class|plane=shade"),
     };
     return hs_options_read(&usage, options, sizeof options / sizeof options[0], argc, argv,
                            exit_code);

@@ -76,6 +76,18 @@ struct options {
 static bool read_options(struct options *o, int argc, char **argv, int *exit_code)
 {
     struct hs_option table[] = {
+        HS_NEEDS_ROW("patches", "method=adjust"),
+        HS_NEEDS_ROW("bands", "method=adjust"),
+        HS_NEEDS_ROW("image", "method=adjust"),
+        HS_NEEDS_ROW("nodata", "image"),
+        HS_NEEDS_ROW("black-is-nodata", "image"),
+        HS_NEEDS_ROW("radar", "method=radar"),
+        HS_NEEDS_ROW("radar-unit", "radar"),
+        HS_NEEDS_ROW("radar-band", "radar"),
+        HS_NEEDS_ROW("incidence", "radar"),
+        HS_NEEDS_ROW("multilook", "radar"),
+        HS_NEEDS_ROW("calibrate", "radar"),
+        HS_NEEDS_ROW("trust-inputs", "radar"),
         {"class-raster", HS_INPUT, &o->class_raster, 0, 0, "FILE",
          "The class raster, from `segment` or `correct`.", true},
         DB_CLASSES_OPTION(o->classes),
@@ -631,13 +643,9 @@ static const char *fault_of(const struct options *o, const char **option)
     if (o->method == ADJUST && o->image.paths.count == 0) {
         return "needs the image for its brightness: name it with --image";
     }
-    *option = "--patches";
-    if (o->patches && o->method != ADJUST) {
-        return "is for --method adjust; the others do not look at the image";
-    }
-    *option = "--radar";
-    if ((o->method == RADAR) != (o->radar.path != NULL)) {
-        return "goes together with --method radar";
+    *option = "--method radar";
+    if (o->method == RADAR && !o->radar.path) {
+        return "needs the radar imagery: name it with --radar";
     }
     *option = "--radar-unit";
     if (o->method == RADAR && o->radar.unit < 0) {

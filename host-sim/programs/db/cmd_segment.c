@@ -94,6 +94,16 @@ static bool read_options(struct options *o, int argc, char **argv, int *exit_cod
         DB_EXEMPLAR_OPTIONS(&o->known),
         {"square", HS_INTEGER, &o->square, 4, 4096, "N",
          "Side in pixels of the squares of the report.", false},
+        HS_NEEDS_ROW("picture-bands", "picture"),
+        HS_NEEDS_ROW("sure", "reject"),
+        HS_NEEDS_ROW("report", "exemplars|labels"),
+        HS_NEEDS_ROW("exemplars", "report"),
+        HS_CLASHES_ROW("exemplars", "labels"),
+        HS_NEEDS_ROW("field", "exemplars"),
+        HS_NEEDS_ROW("labels", "report"),
+        HS_NEEDS_ROW("ignore", "report"),
+        HS_NEEDS_ROW("map", "report"),
+        HS_NEEDS_ROW("square", "report"),
     };
     return hs_options_read(&usage, table, sizeof table / sizeof table[0], argc, argv, exit_code);
 }
@@ -508,24 +518,6 @@ static int run(struct work *w)
     return write_picture(w) != 0 || write_report(w) != 0 ? HS_EXIT_FAILED : HS_EXIT_OK;
 }
 
-static bool has_sense(const struct options *o)
-{
-    if (o->report && !o->known.polygons == !o->known.labels) {
-        hs_error("--report", "give either --exemplars or --labels", "needs to know what is right");
-        return false;
-    }
-    if (!o->report && (o->known.polygons || o->known.labels)) {
-        hs_error("--exemplars", "say with --report where the comparison goes",
-                 "is of no use here without a report");
-        return false;
-    }
-    if (o->sure > 0.5 && !o->reject) {
-        hs_error("--sure", "say with --reject what they become", "is of no use alone");
-        return false;
-    }
-    return true;
-}
-
 int db_cmd_segment(int argc, char **argv)
 {
     hs_outputs_together();
@@ -538,7 +530,7 @@ int db_cmd_segment(int argc, char **argv)
     }
     w->options = &options;
     if (read_options(&options, argc, argv, &exit_code)) {
-        exit_code = has_sense(&options) ? run(w) : HS_EXIT_USAGE;
+        exit_code = run(w);
     }
     db_preview_free(&w->original);
     db_preview_free(&w->classes);

@@ -42,7 +42,7 @@ struct options {
     struct db_image_options image;
     struct db_exemplar_options known;
     const char *classes, *net, *report, *split_out, *hold_out;
-    const char *loss, *unit;
+    int loss, unit; /* enum db_loss, db_unit */
     struct hs_list hidden, priors;
     long context, per_class, members, epochs, patience, redraws, batch, seed;
     double rate, momentum, decay, noise, goal, validate, thin;
@@ -50,8 +50,8 @@ struct options {
 
 static const struct options defaults = {
     .known = {.field = "class"},
-    .loss = "square",
-    .unit = "tanh",
+    .loss = DB_LOSS_SQUARE,
+    .unit = DB_UNIT_TANH,
     .context = 1,
     .per_class = 4000,
     .members = 3,
@@ -99,16 +99,15 @@ static bool read_options(struct options *o, int argc, char **argv, int *exit_cod
          "than\n"
          "three times the inputs, 8..128.",
          false},
-        {"priors", HS_LIST, &o->priors, 0, 0, "HOW",
+        {"priors", HS_LIST, &o->priors, 0, 0, "exemplars|equal|NAME=SHARE,..",
          "How often the network is to expect each class: `exemplars`, as often as it has exemplar "
          "pixels\n"
          "(default with --labels); `equal` (default with --exemplars); or shares, NAME=SHARE,.. "
          "of every class.",
          false},
-        {"unit", HS_TEXT, &o->unit, 0, 0, "KIND", "Hidden units: tanh (default) or sigmoid.",
-         false},
-        {"loss", HS_TEXT, &o->loss, 0, 0, "KIND",
-         "square (default): mean-square error, as in Heaton; or cross-entropy.", false},
+        {"unit", HS_CHOICE, &o->unit, 0, 0, "tanh|sigmoid", "Of the hidden layers.", false},
+        {"loss", HS_CHOICE, &o->loss, 0, 0, "square|cross-entropy",
+         "square: mean-square error, as in Heaton.", false},
         {"committee", HS_INTEGER, &o->members, 1, DB_MEMBERS_MAX, "N",
          "Networks trained from different seeds whose outputs are added; segmenting slows "
          "as much.",
@@ -145,6 +144,9 @@ static bool read_options(struct options *o, int argc, char **argv, int *exit_cod
          "left.",
          false},
         {"seed", HS_INTEGER, &o->seed, 0, 2147483647, "N", "Seed of everything random.", false},
+        HS_CLASHES_ROW("exemplars", "labels"),
+        HS_NEEDS_ROW("field", "exemplars"),
+        HS_NEEDS_ROW("labels", "map"),
     };
     return hs_options_read(&usage, table, sizeof table / sizeof table[0], argc, argv, exit_code);
 }
@@ -223,14 +225,8 @@ static int choose(const struct options *o, struct choices *c)
     if (o->context % 2 == 0) {
         return usage_error("--context", "needs an odd number");
     }
-    if (strcmp(o->loss, "square") != 0 && strcmp(o->loss, "cross-entropy") != 0) {
-        return usage_error("--loss", "needs square or cross-entropy");
-    }
-    if (strcmp(o->unit, "tanh") != 0 && strcmp(o->unit, "sigmoid") != 0) {
-        return usage_error("--unit", "needs tanh or sigmoid");
-    }
-    c->loss = strcmp(o->loss, "square") == 0 ? DB_LOSS_SQUARE : DB_LOSS_CROSS_ENTROPY;
-    c->unit = strcmp(o->unit, "tanh") == 0 ? DB_UNIT_TANH : DB_UNIT_SIGMOID;
+    c->loss = (enum db_loss)o->loss;
+    c->unit = (enum db_unit)o->unit;
     return read_hidden(o, c) != 0 ? -1 : read_hold_out(o, c);
 }
 

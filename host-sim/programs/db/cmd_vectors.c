@@ -62,18 +62,11 @@ static bool read_settings(struct settings *s, int argc, char **argv, int *exit_c
                "the ground is somebody's land cover: its codes, each with a class"),
         OPTION("unknown-codes", HS_TEXT, unknown_codes, 0, 0, "NAME",
                "class of codes that the map leaves out, or none; left out: they are an error"),
+        HS_NEEDS_ROW("map", "ground"),
+        HS_NEEDS_ROW("unknown-codes", "map"),
     };
     return hs_options_read(&usage, options, sizeof options / sizeof options[0], argc, argv,
                            exit_code);
-}
-
-static int check_settings(const struct settings *s)
-{
-    static const char remedy[] = "see landmass-db vectors --help";
-    if (s->map && !s->ground) {
-        return hs_error("--map", remedy, "needs --ground");
-    }
-    return s->unknown_codes && !s->map ? hs_error("--unknown-codes", remedy, "needs --map") : 0;
 }
 
 /* Everything of one run; freed whole. */
@@ -312,9 +305,7 @@ int db_cmd_vectors(int argc, char **argv)
     const bool goes_on = read_settings(&s, argc, argv, &exit_code);
     struct job *j = goes_on ? calloc(1, sizeof *j) : NULL;
     if (goes_on) {
-        exit_code = check_settings(&s) != 0 ? HS_EXIT_USAGE
-                    : j && work(j, &s) == 0 ? HS_EXIT_OK
-                                            : HS_EXIT_FAILED;
+        exit_code = j && work(j, &s) == 0 ? HS_EXIT_OK : HS_EXIT_FAILED;
     }
     for (int i = 0; j && i < j->source_count; i++) {
         vector_source_close(&j->sources[i]);

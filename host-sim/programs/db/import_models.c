@@ -25,12 +25,6 @@ static int read_axes(struct visual_axes *axes, const struct import_options *o)
             axes->metres_per_unit = units[i].metres;
         }
     }
-    if (o->unit && axes->metres_per_unit <= 0) {
-        return hs_error("--unit", "choose m, cm, mm, ft, us-ft or in", "`%s` is no unit", o->unit);
-    }
-    if (o->up && strcmp(o->up, "y") != 0 && strcmp(o->up, "z") != 0) {
-        return hs_error("--up", "choose y or z", "`%s` is no axis", o->up);
-    }
     if (o->up) {
         axes->up = o->up[0] == 'y' ? VISUAL_UP_Y : VISUAL_UP_Z;
     }

@@ -209,6 +209,17 @@ static bool read_table(struct command *c, struct raw *raw, int argc, char **argv
          "send fixes that repeat the position of the one before although the aircraft moves; "
          "otherwise they are left out and counted",
          false},
+        HS_CLASHES_ROW("circle", "TRACK|straight"),
+        HS_CLASHES_ROW("straight", "TRACK"),
+        HS_NEEDS_ROW("format", "TRACK"),
+        HS_NEEDS_ROW("strict", "TRACK"),
+        HS_NEEDS_ROW("speed", "TRACK"),
+        HS_NEEDS_ROW("datum", "TRACK"),
+        HS_NEEDS_ROW("qnh", "TRACK"),
+        HS_NEEDS_ROW("max-gap", "TRACK"),
+        HS_NEEDS_ROW("max-speed", "TRACK"),
+        HS_NEEDS_ROW("keep-repeats", "TRACK"),
+        HS_NEEDS_ROW("weather-clear", "rain|jammer"),
         {"Heights", HS_HEADING, NULL, 0, 0, NULL, heights_help, false},
         {"Columns of a CSV", HS_HEADING, NULL, 0, 0, NULL, columns_help, false},
     };

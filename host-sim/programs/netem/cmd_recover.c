@@ -225,8 +225,7 @@ int nm_cmd_recover(int argc, char **argv)
     bool is_resumed = false;
     int exit_code;
     struct hs_option options[OPTIONS] = {
-        {"hidden-law", HS_TEXT, &h.law, 0, 0, "NAME",
-         "raysar, fresnel-hh, fresnel-vv (default), spm-hh or spm-vv", false},
+        {"hidden-law", HS_WORD, &h.law, 0, 0, REFLECT_KIND_WORDS, "that is to be found", false},
         {"hidden-materials", HS_INPUT, &h.materials, 0, 0, "FILE",
          "its surfaces, in the form that `landmass-target materials` prints", false},
         {"number", HS_INTEGER, &h.chips, 2, 10000, "N", "chips to make", false},

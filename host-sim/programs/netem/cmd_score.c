@@ -126,8 +126,7 @@ int nm_cmd_score(int argc, char **argv)
     struct hs_option options[OPTIONS] = {
         {"training", HS_INPUT, &training, 0, 0, "FILE", "that `train` left", true},
         {"out", HS_FOLDER, &out, 0, 0, "FOLDER", "for the results", true},
-        {"set", HS_TEXT, &set, 0, 0, "validation|training", "which chips; default validation",
-         false},
+        {"set", HS_WORD, &set, 0, 0, "validation|training", "which chips", false},
         {"seed", HS_INTEGER, &s.seed, 0, 1e15, "N", "of the division into both", false},
         {"others", HS_INPUTS, &others, 0, 0, "LIST,...", "of chips of other vehicles", false},
     };

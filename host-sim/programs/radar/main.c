@@ -30,6 +30,16 @@ static int read_image(struct lm_radar *radar, const char *path)
                                 "carries no radar table");
 }
 
+static bool is_text(const uint8_t *bytes, size_t count)
+{
+    size_t i = 0;
+    while (i < count &&
+           (bytes[i] >= ' ' || bytes[i] == '\n' || bytes[i] == '\r' || bytes[i] == '\t')) {
+        i++;
+    }
+    return count > 0 && i == count;
+}
+
 /* The first bytes tell an image from a record. */
 static int read_packed(struct lm_radar *radar, const char *path)
 {
@@ -44,6 +54,10 @@ static int read_packed(struct lm_radar *radar, const char *path)
         return read_image(radar, path);
     }
     const int status = lm_radar_unpack(radar, bytes, (uint32_t)count);
+    if (status != LM_OK && is_text(bytes, count)) {
+        return hs_error(path, "check it with `landmass-radar check`, or name an image or a record",
+                        "is a text already, which is what `print` makes");
+    }
     return status == LM_OK ? 0
                            : hs_error(path, "write it again with `landmass-radar record`",
                                       status == LM_ERR_VERSION ? "is no record of this version"

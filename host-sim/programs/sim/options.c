@@ -71,7 +71,7 @@ static const char *take_glass(void *context, const char *word)
             return NULL;
         }
     }
-    return "needs one of its words";
+    return hs_options_words("whole|heading|strobe|borders");
 }
 
 static const char *take_profile(void *context, const char *name)
@@ -152,6 +152,14 @@ static bool read_table(struct options *o, struct raw *raw, int argc, char **argv
         {"seed", HS_INTEGER, &raw->seed, 0, 0x7fffffff, "N",
          "another speckle; the same inputs and seed give the same pictures", false},
         {"quiet", HS_FLAG, &o->is_quiet, 0, 0, NULL, "no summary", false},
+        HS_CLASHES_ROW("can", "bus"),
+        HS_NEEDS_ROW("profile", "bus|can"),
+        HS_NEEDS_ROW("heading", "bus|can"),
+        HS_NEEDS_ROW("reports", "node"),
+        HS_NEEDS_ROW("bus-out", "node"),
+        HS_NEEDS_ROW("every", "png"),
+        HS_NEEDS_ROW("bezel", "png"),
+        HS_NEEDS_ROW("start", "bus"),
         {"Script", HS_HEADING, NULL, 0, 0, NULL, script_help, false},
         {"Keys of the window", HS_HEADING, NULL, 0, 0, NULL, window_keys_help, false},
     };

@@ -90,17 +90,20 @@ int target_cmd_model(int argc, char **argv)
     long size_px = 480;
     s.depression_deg = 30;
     s.azimuth_deg = 30;
-    struct hs_option options[SETUP_MODEL_OPTIONS + 5] = {
+    struct hs_option options[SETUP_MODEL_OPTIONS + 8] = {
         {"obj", HS_OUTPUT, &obj, 0, 0, "FILE.obj", "write the model, with z up", false},
         {"view", HS_OUTPUT, &view, 0, 0, "FILE.png", "draw the model", false},
         {"azimuth", HS_REAL, &s.azimuth_deg, -360, 360, "DEG",
          "of the eye, from the model's nose towards its right", false},
         {"depression", HS_REAL, &s.depression_deg, 1, 90, "DEG", "of the eye's sight", false},
         {"size", HS_INTEGER, &size_px, 16, 4096, "PIXELS", "of the picture", false},
+        HS_NEEDS_ROW("azimuth", "view"),
+        HS_NEEDS_ROW("depression", "view"),
+        HS_NEEDS_ROW("size", "view"),
     };
     int exit_code;
-    setup_model_options(&s, options + 5);
-    if (!hs_options_read(&usage, options, SETUP_MODEL_OPTIONS + 5, argc, argv, &exit_code)) {
+    setup_model_options(&s, options + 8);
+    if (!hs_options_read(&usage, options, SETUP_MODEL_OPTIONS + 8, argc, argv, &exit_code)) {
         return exit_code;
     }
     struct mesh m;

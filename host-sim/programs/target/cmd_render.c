@@ -99,7 +99,7 @@ int target_cmd_render(int argc, char **argv)
     struct setup s = setup_default();
     const char *records = NULL, *png = NULL, *csv = NULL;
     long zoom = 6;
-    enum { OWN = 5, COUNT = OWN + SETUP_OPTIONS };
+    enum { OWN = 17, COUNT = OWN + SETUP_OPTIONS };
     struct hs_option options[COUNT] = {
         {"records", HS_INPUT, &records, 0, 0, "FILE.trace", "in place of a model", false},
         {"out", HS_OUTPUT, &png, 0, 0, "FILE.png", "the picture", false},
@@ -107,6 +107,18 @@ int target_cmd_render(int argc, char **argv)
         {"zoom", HS_INTEGER, &zoom, 1, 64, "N", "dots of the PNG a pixel, either way", false},
         {"azimuth", HS_REAL, &s.azimuth_deg, -360, 360, "DEG",
          "of the radar, from the model's nose towards its right", false},
+        HS_NEEDS_ROW("zoom", "out"),
+        HS_NEEDS_ROW("azimuth", "model"),
+        HS_NEEDS_ROW("up", "model"),
+        HS_NEEDS_ROW("scale", "model"),
+        HS_NEEDS_ROW("turn", "model"),
+        HS_NEEDS_ROW("as-is", "model"),
+        HS_NEEDS_ROW("depression", "model"),
+        HS_NEEDS_ROW("cell", "model"),
+        HS_NEEDS_ROW("cells", "model"),
+        HS_NEEDS_ROW("no-ground", "model"),
+        HS_NEEDS_ROW("rays", "model"),
+        HS_NEEDS_ROW("bounces", "model"),
     };
     int exit_code;
     setup_options(&s, options + OWN);

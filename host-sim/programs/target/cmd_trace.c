@@ -74,7 +74,7 @@ int target_cmd_trace(int argc, char **argv)
 {
     struct setup s = setup_default();
     struct outputs outputs = {NULL, NULL, 2};
-    enum { OWN = 4, COUNT = OWN + SETUP_MODEL_OPTIONS + SETUP_TRACE_OPTIONS };
+    enum { OWN = 5, COUNT = OWN + SETUP_MODEL_OPTIONS + SETUP_TRACE_OPTIONS };
     struct hs_option options[COUNT] = {
         {"out", HS_OUTPUT, &outputs.records, 0, 0, "FILE.trace", "the records", true},
         {"picture", HS_OUTPUT, &outputs.picture, 0, 0, "FILE.png",
@@ -83,6 +83,7 @@ int target_cmd_trace(int argc, char **argv)
          false},
         {"picture-of", HS_INTEGER, &outputs.bounce, 1, TRACE_BOUNCES_MAX, "N",
          "which reflection that is", false},
+        HS_NEEDS_ROW("picture-of", "picture"),
         {"azimuth", HS_REAL, &s.azimuth_deg, -360, 360, "DEG",
          "of the radar, from the model's nose towards its right", false},
     };

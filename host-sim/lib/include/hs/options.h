@@ -7,7 +7,7 @@
 #include <stdbool.h>
 #include <stddef.h>
 
-enum { HS_LIST_MAX = 256 };
+enum { HS_LIST_MAX = 256, HS_OPTIONS_MAX = 128 };
 
 /* A repeated or comma separated option; `items` are owned. */
 struct hs_list {
@@ -35,20 +35,37 @@ enum hs_option_kind {
     HS_INTEGER, /* long within low..high */
     HS_CHOICE,  /* int: which of the words in value_name, "csv|gpx|igc", counted from 0; -1 before:
                    there is no default */
+    HS_WORD,    /* const char *, borrowed from argv: one of the words in value_name */
     HS_TAKER,   /* struct hs_taker */
     HS_INPUT_ARGUMENT, /* const char *: the next word that is no option, a file that is read. "-" is
                           such a word. name: its place holder, "TRACK" */
     HS_OUTPUT_ARGUMENT, /* likewise a file that is written */
     HS_HEADING, /* no option: a heading (name, or NULL for none) of what follows in the help, and
                    lines of text below it (help) */
+    HS_NEEDS,   /* no option: HS_NEEDS_ROW */
+    HS_CLASHES, /* no option: HS_CLASHES_ROW */
 };
+
+/* Rows of a table that say which options go together; the help says it below the option `name`.
+ * `others` are names between bars, each perhaps with a word of a choice: "map|method=adjust". The
+ * first asks that one of them is given, or that the choice has that word, be it by default; the
+ * second that none is. An option that would be ignored without a word needs such a row. */
+#define HS_NEEDS_ROW(name, others)                                                                 \
+    {                                                                                              \
+        name, HS_NEEDS, NULL, 0, 0, others, NULL, false                                            \
+    }
+#define HS_CLASHES_ROW(name, others)                                                               \
+    {                                                                                              \
+        name, HS_CLASHES, NULL, 0, 0, others, NULL, false                                          \
+    }
 
 struct hs_option {
     const char *name; /* without the dashes */
     enum hs_option_kind kind;
     void *target; /* of the type named above; holds the default before and the value after */
     double low, high;
-    const char *value_name; /* "FILE", "N" */
+    const char *value_name; /* "FILE", "N"; words in small letters between bars are offered by the
+                               shell: "exemplars|equal|NAME=SHARE" */
     const char *help;       /* may hold several lines */
     bool is_required;       /* a text, a list or an argument */
 };
@@ -63,7 +80,8 @@ struct hs_usage {
  * true when the command shall go on. Otherwise *exit_code is:
  * - HS_EXIT_OK: --help, -h, --version, --help=man or --help=list was asked for and printed,
  * - HS_EXIT_USAGE, reported: a word too many or an unknown option, a value too many or too few, a
- *   number outside its range, a word that is no choice, or a required option that is missing,
+ *   number outside its range, a word that is no choice, a required option that is missing, or
+ *   options that do not go together,
  * - HS_EXIT_FAILED, reported: an output cannot be written, or is an input or another output. */
 bool hs_options_read(const struct hs_usage *usage, const struct hs_option *options, size_t count,
                      int argc, char **argv, int *exit_code);
@@ -71,6 +89,10 @@ bool hs_options_read(const struct hs_usage *usage, const struct hs_option *optio
 /* Report what is wrong with `option` ("--bus") where each option alone makes sense and they do not
  * together. Returns HS_EXIT_USAGE. */
 int hs_options_wrong(const struct hs_usage *usage, const char *option, const char *cause);
+
+/* For a struct hs_taker: "needs whole, heading or strobe", of words between bars. Borrowed until
+ * the next refusal. */
+const char *hs_options_words(const char *words);
 
 /* Free the items. Harmless on a zeroed list. */
 void hs_list_free(struct hs_list *list);

@@ -70,6 +70,9 @@ enum reflect_kind {
 };
 extern const char *const reflect_kind_names[REFLECT_KINDS];
 
+/* The same words for a table of options. */
+#define REFLECT_KIND_WORDS "raysar|fresnel-hh|fresnel-vv|spm-hh|spm-vv"
+
 struct reflect_law {
     enum reflect_kind kind;
     double wavelength_m;

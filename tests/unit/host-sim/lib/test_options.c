@@ -13,7 +13,7 @@
 
 struct values {
     bool is_quiet;
-    const char *out, *track, *second, *folder;
+    const char *out, *track, *second, *folder, *axis, *share;
     struct hs_list list;
     double height;
     long count;
@@ -57,6 +57,11 @@ static int read_words(struct values *v, const char *const *words)
         {"format", HS_CHOICE, &v->format, 0, 0, "csv|gpx|igc", "of the track", false},
         {"into", HS_FOLDER, &v->folder, 0, 0, "DIR", "a folder", false},
         {"pair", HS_TAKER, &pair, 0, 0, "A,B", "a pair", false},
+        {"axis", HS_WORD, &v->axis, 0, 0, "y|z", "which axis", false},
+        {"share", HS_TEXT, &v->share, 0, 0, "all|equal|NAME=X,..", "of each", false},
+        HS_NEEDS_ROW("SECOND", "quiet|pair"),
+        HS_NEEDS_ROW("axis", "into|format=csv"),
+        HS_CLASHES_ROW("quiet", "pair"),
     };
     return hs_options_read(&usage, options, sizeof options / sizeof options[0], argc, argv,
                            &exit_code)
@@ -76,8 +81,8 @@ TEST(every_kind_is_read_with_its_value_beside_or_behind_an_equals_sign)
     assert_string_equal(v.list.items[2], "c");
     assert_null(v.second);
     hs_list_free(&v.list);
-    assert_int_equal(READ(&v, "-", "two", "--pair", "1,2", "--pair", "3,4", "--quiet"), -1);
-    assert_true(v.pairs == 2 && v.is_quiet && v.count == 7 && v.format == 1 && isnan(v.height));
+    assert_int_equal(READ(&v, "-", "two", "--pair", "1,2", "--pair", "3,4"), -1);
+    assert_true(v.pairs == 2 && !v.is_quiet && v.count == 7 && v.format == 1 && isnan(v.height));
     assert_string_equal(v.second, "two");
 }
 
@@ -106,23 +111,27 @@ static int caught(int stream, char *text, size_t size, const char *const *words)
 TEST(a_wrong_command_line_is_refused_with_the_option_and_the_cause)
 {
     static const struct {
-        const char *words[4], *said;
+        const char *words[5], *said;
     } wrong[] = {
         {{"t", "--nosuch"}, "try --nosuch: is not an option"},
         {{"t", "-q"}, "try -q: is not an option"},
-        {{"t", "--height", "11"}, "try --height 11: needs a number within its range"},
+        {{"t", "--height", "11"}, "try --height 11: needs a number from -10 to 10"},
         {{"t", "--height", "nan"}, "needs a number"},
         {{"t", "--height", "1e999"}, "needs a number"},
-        {{"t", "--count", "1.5"}, "needs a whole number"},
+        {{"t", "--count", "1.5"}, "try --count 1.5: needs a whole number from 0 to 9"},
         {{"t", "--count", "1x"}, "needs a whole number"},
         {{"t", "--count"}, "try --count: needs a value"},
         {{"t", "--quiet=yes"}, "takes no value"},
-        {{"t", "--format", "cs"}, "try --format cs: needs one of its words"},
+        {{"t", "--format", "cs"}, "try --format cs: needs csv, gpx or igc"},
         {{"t", "--pair", "1"}, "try --pair 1: needs two numbers"},
         {{"t", "u", "v"}, "try v: is a word too many"},
         {{"--quiet"}, "try TRACK: is required"},
         {{"t", "--TRACK", "u"}, "is not an option"},
         {{"t", "--Numbers", "u"}, "is not an option"},
+        {{"t", "--axis", "x"}, "try --axis x: needs y or z"},
+        {{"t", "--axis", "y"}, "try --axis: needs --into or --format csv"},
+        {{"t", "--quiet", "--pair", "1,2"}, "try --quiet: cannot be given together with --pair"},
+        {{"t", "second", "--axis=z"}, "try SECOND: needs --quiet or --pair"},
     };
     hs_set_program("landmass-test");
     for (size_t i = 0; i < sizeof wrong / sizeof wrong[0]; i++) {
@@ -150,6 +159,9 @@ TEST(the_help_names_every_option_with_range_and_default)
                                         "Range 0 to 9; default 7.\n",
                                         "  --format csv|gpx|igc\n",
                                         "Default gpx.\n",
+                                        "  --axis y|z\n      which axis\n      Needs --into or "
+                                        "--format csv.\n",
+                                        "Cannot be given together with --pair.\n",
                                         "  --version\n"};
     for (size_t i = 0; i < sizeof parts / sizeof parts[0]; i++) {
         if (!strstr(text, parts[i])) {
@@ -165,11 +177,13 @@ TEST(the_list_for_the_shell_has_every_option_and_its_value)
 {
     char text[1000];
     assert_int_equal(CAUGHT(STDOUT_FILENO, text, "--help=list"), HS_EXIT_OK);
-    assert_string_equal(text,
-                        "\tTRACK\tfile\n\tSECOND\tfile\n--quiet\t\t\n--out\tFILE\t\n"
-                        "--item\tNAME\t\n--height\tM\t\n--count\tN\t\n"
-                        "--format\tcsv|gpx|igc\tcsv|gpx|igc\n--into\tDIR\tfolder\n"
-                        "--pair\tA,B\t\n--json\tFILE\tfile\n--help\t\t\n--version\t\t\n");
+    assert_string_equal(
+        text,
+        "\tTRACK\tfile\n\tSECOND\tfile\n--quiet\t\t\n--out\tFILE\t\n"
+        "--item\tNAME\t\n--height\tM\t\n--count\tN\t\n"
+        "--format\tcsv|gpx|igc\tcsv|gpx|igc\n--into\tDIR\tfolder\n"
+        "--pair\tA,B\t\n--axis\ty|z\ty|z\n"
+        "--share\tall|equal|NAME=X,..\tall|equal\n--json\tFILE\tfile\n--help\t\t\n--version\t\t\n");
 }
 
 TEST(the_manual_page_escapes_what_would_be_a_command)
@@ -184,4 +198,12 @@ TEST(the_manual_page_escapes_what_would_be_a_command)
             fail_msg("the page lacks \"%s\": %s", parts[i], text);
         }
     }
+}
+
+TEST(a_choice_has_its_word_by_default_too)
+{
+    struct values v;
+    assert_int_equal(READ(&v, "t", "--axis", "y", "--format", "csv"), -1);
+    assert_string_equal(v.axis, "y");
+    assert_int_equal(READ(&v, "t", "--axis", "y", "--into", "."), -1);
 }

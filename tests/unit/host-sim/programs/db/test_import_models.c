@@ -354,7 +354,8 @@ TEST(what_a_file_does_not_say_is_asked_for)
                   "--at 1,1 --cell 1");
     check_refusal("--unit m|cm", "house.obj", "--at 1,1 --cell 1 --unit m");
     check_refusal("leave out --unit and --up", "square.gltf", "--at 1,1 --cell 1 --unit ft");
-    check_refusal("`mile` is no unit", "house.obj", "--at 1,1 --cell 1 --unit mile --up z");
+    check_refusal("needs m, cm, mm, ft, us-ft or in", "house.obj",
+                  "--at 1,1 --cell 1 --unit mile --up z");
     check_refusal("does not say where it stands", "house.obj", "--cell 1 --unit m --up z");
     check_refusal("no projected coordinate reference system", "house.obj",
                   "--cell 1 --unit m --up z --crs EPSG:4326");
@@ -417,7 +418,7 @@ TEST(a_missing_texture_is_named_and_a_plain_colour_stands_for_it)
                                  "import --model %s --unit m --up z --at 36.1,3" HOUSE_OUT,
                                  fixture_path("house.obj"), HOUSE_PATHS),
                      0);
-    assert_non_null(strstr(said, "1 textures are missing"));
+    assert_non_null(strstr(said, "1 texture is missing"));
     assert_non_null(strstr(said, "roof.png"));
     float *red = read_band("image.tif", 0, &grid);
     assert_int_equal((int)red[20 * 40 + 16], 255);

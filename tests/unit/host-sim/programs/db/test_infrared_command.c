@@ -175,7 +175,7 @@ TEST(what_does_not_look_like_terrain_or_heights_is_refused_unless_it_is_trusted)
         {"--shadows --heights", "gamma.tif", SIDE, -20, 1, "below"},
         {"--shadows --heights", "sea.tif", SIDE, 400, 1, "above"},
         {"--shadows --heights", "small.tif", SIDE / 2, 5, 1, "another grid"},
-        {"--heights", "five.tif", SIDE, 5, 2, "add --shadows"},
+        {"--heights", "five.tif", SIDE, 5, 2, "needs --shadows"},
     };
     write_scene();
     for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
@@ -286,14 +286,14 @@ TEST(the_command_says_what_is_wrong)
         int code;
         const char *more, *says;
     } wrong[] = {
-        {HS_EXIT_FAILED, "--hours 4,25", "`25` is no hour"},
-        {HS_EXIT_FAILED, "--hours noon", "`noon` is no hour"},
-        {HS_EXIT_USAGE, "--date 02-30", "needs a month and a day"},
+        {HS_EXIT_USAGE, "--hours 4,25", "`25` is no hour"},
+        {HS_EXIT_USAGE, "--hours noon", "`noon` is no hour"},
+        {HS_EXIT_USAGE, "--date 02-30", "names a day that its month has not"},
         {HS_EXIT_USAGE, "--date 13-01", "needs a month and a day"},
-        {HS_EXIT_USAGE, "--cloud 2", "needs a number within its range"},
-        {HS_EXIT_USAGE, "--latitude 91", "needs a number within its range"},
+        {HS_EXIT_USAGE, "--cloud 2", "needs a number from 0 to 1"},
+        {HS_EXIT_USAGE, "--latitude 91", "needs a number from -90 to 90"},
         {HS_EXIT_FAILED, "--terrain nosuch.tif", "cannot be opened"},
-        {HS_EXIT_USAGE, "--shadows", "needs what casts them"},
+        {HS_EXIT_USAGE, "--shadows", "needs --terrain or --heights"},
         {HS_EXIT_FAILED, "--shadows --heights nosuch.tif", "cannot be opened"},
     };
     write_scene();

@@ -121,8 +121,8 @@ TEST(a_class_is_even_over_the_edge_of_two_pictures_at_every_level)
 TEST(masks_that_are_none_are_refused)
 {
     write_patches();
-    assert_true(fixture_fails(2, "is for --method adjust", REFLECT "--patches %s", REFLECT_PATHS,
-                              fixture_path("mask.tif")));
+    assert_true(fixture_fails(2, "--patches: needs --method adjust", REFLECT "--patches %s",
+                              REFLECT_PATHS, fixture_path("mask.tif")));
     assert_true(fixture_fails(1, "numbers of patches are whole",
                               REFLECT "--method adjust --image %s --patches %s", REFLECT_PATHS,
                               fixture_path("bright.tif"), fixture_path("bright.tif")));
@@ -263,7 +263,7 @@ TEST(radar_of_the_wrong_unit_or_place_is_refused)
     assert_true(
         fixture_fails(1, "no power is below 0", RADAR "--radar-unit linear", REFLECT_PATHS, radar));
     assert_true(fixture_fails(2, "must say whether", RADAR, REFLECT_PATHS, radar));
-    assert_true(fixture_fails(2, "goes together with --method radar", REFLECT "--radar %s",
+    assert_true(fixture_fails(2, "--radar: needs --method radar", REFLECT "--radar %s",
                               REFLECT_PATHS, radar));
     write_radar(1, true, 30);
     assert_true(fixture_fails(1, "is it --radar-unit linear?", RADAR "--radar-unit db",

@@ -324,7 +324,7 @@ TEST(pixels_between_two_classes_are_rejected_when_surety_is_asked_for)
     assert_true(fixture_fails(HS_EXIT_FAILED, "there is no class `clouds`",
                               "segment " SCENE " --net %s --out %s --reject clouds", SCENE_PATHS,
                               fixture_path("scene.net"), fixture_path("never.tif")));
-    assert_true(fixture_fails(HS_EXIT_USAGE, "say with --reject what they become",
+    assert_true(fixture_fails(HS_EXIT_USAGE, "--sure: needs --reject",
                               "segment " SCENE " --net %s --out %s --sure 0.9", SCENE_PATHS,
                               fixture_path("scene.net"), fixture_path("never.tif")));
 }

@@ -46,7 +46,7 @@ TEST(a_command_line_that_makes_no_sense_is_told_so)
     assert_int_equal(support_run("%s/bin/landmass-netem recover --model slicy --out %s/none "
                                  "--architecture EP9",
                                  b, folder),
-                     1);
+                     2);
 }
 
 TEST(a_training_killed_at_any_epoch_ends_in_the_same_file)
