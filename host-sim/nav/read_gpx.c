@@ -2,6 +2,7 @@
  * leg, because GPX says that a track is broken there. As a route: points of routes (rtept) or of
  * tracks, whichever the file has first. Elevations are above mean sea level; geoidheight, that of
  * the geoid above the ellipsoid. */
+#include "hs/error.h"
 #include "hs/number.h"
 #include "nav/parse.h"
 #include "read_formats.h"
@@ -16,6 +17,7 @@ struct gpx {
     const char *point; /* the element that is a point of this reading */
     bool is_in_point, has_time, begins_segment;
     const char *fault; /* what is wrong with the point being read */
+    size_t left_out;   /* points of routes */
 };
 
 static void begin_point(struct gpx *g, const char **attributes)
@@ -52,6 +54,8 @@ static int begin_element(void *user, const char *name, const char **attributes)
         g->begins_segment = true;
     } else if (is_point(g, name)) {
         begin_point(g, attributes);
+    } else {
+        g->left_out += strcmp(name, "rtept") == 0;
     }
     return 0;
 }
@@ -108,5 +112,10 @@ int nav_read_gpx(const char *text, size_t size, struct nav_track *t, struct nav_
 {
     static const struct nav_xml_format format = {begin_element, end_element};
     struct gpx g = {.track = t, .reading = r, .point = r->is_route ? NULL : "trkpt"};
-    return nav_read_xml(text, size, r->name, &format, &g);
+    const int result = nav_read_xml(text, size, r->name, &format, &g);
+    if (result == 0 && t->count == 0 && g.left_out > 0) {
+        hs_warn(r->name, "--speed flies them", "its %zu points of a route have no times",
+                g.left_out);
+    }
+    return result;
 }

@@ -1,8 +1,9 @@
 /* KML 2.2 and 2.3 (OGC 07-147r2, 12-007r2), with Google's gx: names of what 2.3 took over. Fixes
  * are those of tracks (gx:Track): its n-th time belongs to its n-th place and its n-th attitude.
- * Each track begins a leg. As a route: the places of tracks, or of the first line (LineString),
- * whichever the file has first. Altitudes are above mean sea level where altitudeMode is absolute;
- * all others are above a ground that is not known here. */
+ * Each track begins a leg. A file without tracks may have placemarks instead, each a Point with a
+ * TimeStamp: they are one leg in the order of their times. As a route: the places of tracks, or of
+ * the first line (LineString), whichever the file has first. Altitudes are above mean sea level
+ * where altitudeMode is absolute; all others are above a ground that is not known here. */
 #include "nav/parse.h"
 #include "read_formats.h"
 #include "read_xml.h"
@@ -24,6 +25,14 @@ struct point {
     long line;
 };
 
+/* A Placemark with a TimeStamp and a Point. */
+struct mark {
+    struct point point;
+    char mode[MODE_SIZE]; /* altitudeMode */
+    bool has_time;
+    size_t order; /* in the file */
+};
+
 struct kml {
     struct nav_track *track;
     struct nav_reading *reading;
@@ -37,6 +46,10 @@ struct kml {
     size_t links;                /* to other files */
     size_t above_ground;         /* altitudes left out */
     char ground_mode[MODE_SIZE]; /* the altitudeMode of the first of them */
+    struct mark *marks;          /* owned: those with a time and a place */
+    size_t mark_count, mark_capacity;
+    struct mark mark; /* being read */
+    bool is_in_point, is_in_stamp;
 };
 
 /* Point `index` of the shape, or NULL with the error reported. */
@@ -77,22 +90,35 @@ static int cut_numbers(char *text, const char *separators, double value[3])
     return count;
 }
 
-static int take_place(struct kml *k, char *text, const char *separators, long line)
+static void read_place(struct point *p, char *text, const char *separators)
 {
-    struct point *p = point_at(k, k->places++, line);
     double value[3];
-    if (!p || *text == '\0') {
-        return p ? 0 : -1; /* an empty one honestly says that there was no fix */
-    }
     const int count = cut_numbers(text, separators, value);
     p->has_place = true;
     if (count < 2) {
         p->fault = "the place is not longitude, latitude and altitude";
-        return 0;
+        return;
     }
     p->fix.longitude_deg = value[0];
     p->fix.latitude_deg = value[1];
     p->fix.height_m = count == 3 ? value[2] : NAN;
+}
+
+/* A year alone is a time of KML, and a number of seconds elsewhere. */
+static void read_time(struct point *p, const char *text)
+{
+    if (!strchr(text, 'T') || !nav_parse_time(text, &p->fix.time_us)) {
+        p->fault = "the time is not a date with a time of day";
+    }
+}
+
+static int take_place(struct kml *k, char *text, const char *separators, long line)
+{
+    struct point *p = point_at(k, k->places++, line);
+    if (!p || *text == '\0') {
+        return p ? 0 : -1; /* an empty one honestly says that there was no fix */
+    }
+    read_place(p, text, separators);
     return 0;
 }
 
@@ -114,9 +140,8 @@ static int take_time(struct kml *k, const char *text, long line)
     if (!p) {
         return -1;
     }
-    /* A year alone is a time of KML, and a number of seconds elsewhere. */
-    if (!k->reading->is_route && (!strchr(text, 'T') || !nav_parse_time(text, &p->fix.time_us))) {
-        p->fault = "the time is not a date with a time of day";
+    if (!k->reading->is_route) {
+        read_time(p, text);
     }
     return 0;
 }
@@ -136,6 +161,62 @@ static int take_attitude(struct kml *k, char *text, long line)
     p->fix.heading_deg = nav_wrap_180(value[0]);
     p->fix.pitch_deg = value[1];
     p->fix.roll_deg = value[2];
+    return 0;
+}
+
+static void begin_mark(struct kml *k, const char *name)
+{
+    if (strcmp(name, "Placemark") == 0) {
+        k->mark = (struct mark){.point.fix = nav_fix_blank(), .mode = "clampToGround"};
+        k->is_in_point = k->is_in_stamp = false;
+    } else if (strcmp(name, "Point") == 0) {
+        k->is_in_point = true;
+    } else if (strcmp(name, "TimeStamp") == 0) {
+        k->is_in_stamp = true;
+    }
+}
+
+static int keep_mark(struct kml *k, long line)
+{
+    if (!k->mark.has_time || !k->mark.point.has_place) {
+        return 0;
+    }
+    if (k->mark_count == k->mark_capacity) {
+        const size_t capacity = k->mark_capacity > 0 ? 2 * k->mark_capacity : 64;
+        struct mark *grown =
+            capacity <= POINTS_MOST ? realloc(k->marks, capacity * sizeof *grown) : NULL;
+        if (!grown) {
+            return hs_error(k->reading->name, "cut it into parts", "has too many placemarks");
+        }
+        k->marks = grown;
+        k->mark_capacity = capacity;
+    }
+    k->mark.point.line = line;
+    k->mark.order = k->mark_count;
+    k->marks[k->mark_count++] = k->mark;
+    return 0;
+}
+
+static int end_mark(struct kml *k, const char *name, char *text, long line)
+{
+    struct mark *m = &k->mark;
+    if (strcmp(name, "Placemark") == 0) {
+        const int result = keep_mark(k, line);
+        m->has_time = m->point.has_place = false;
+        return result;
+    }
+    if (strcmp(name, "Point") == 0) {
+        k->is_in_point = false;
+    } else if (strcmp(name, "TimeStamp") == 0) {
+        k->is_in_stamp = false;
+    } else if (k->is_in_stamp && strcmp(name, "when") == 0) {
+        m->has_time = true;
+        read_time(&m->point, text);
+    } else if (k->is_in_point && strcmp(name, "altitudeMode") == 0) {
+        snprintf(m->mode, sizeof m->mode, "%s", text);
+    } else if (k->is_in_point && strcmp(name, "coordinates") == 0) {
+        read_place(&m->point, text, ",");
+    }
     return 0;
 }
 
@@ -167,6 +248,8 @@ static int begin_element(void *user, const char *name, const char **attributes)
         k->points = NULL;
         k->capacity = 0;
         strcpy(k->mode, "clampToGround");
+    } else {
+        begin_mark(k, name);
     }
     return 0;
 }
@@ -243,13 +326,38 @@ static int end_element(void *user, const char *name, char *text, long line)
 {
     struct kml *k = user;
     if (!k->is_in_shape) {
-        return 0;
+        return end_mark(k, name, text, line);
     }
     if (k->depth == 0) {
         return end_shape(k, line);
     }
     k->depth--;
     return k->depth == 0 ? take_value(k, name, text, line) : 0;
+}
+
+static int compare_marks(const void *a, const void *b)
+{
+    const struct mark *m = a, *n = b;
+    const int64_t first = m->point.fix.time_us, second = n->point.fix.time_us;
+    return first != second ? (first > second) - (first < second)
+                           : (m->order > n->order) - (m->order < n->order);
+}
+
+/* Placemarks are a track only where the file has no other: many programs write both. */
+static int fly_marks(struct kml *k)
+{
+    bool begins_leg = true;
+    if (k->track->count > 0 || k->mark_count == 0) {
+        return 0;
+    }
+    qsort(k->marks, k->mark_count, sizeof *k->marks, compare_marks);
+    for (size_t i = 0; i < k->mark_count; i++) {
+        memcpy(k->mode, k->marks[i].mode, sizeof k->mode);
+        if (accept_point(k, &k->marks[i].point, &begins_leg) != 0) {
+            return -1;
+        }
+    }
+    return 0;
 }
 
 static void tell(const struct kml *k)
@@ -278,10 +386,14 @@ int nav_read_kml(const char *text, size_t size, struct nav_track *t, struct nav_
 {
     static const struct nav_xml_format format = {begin_element, end_element};
     struct kml k = {.track = t, .reading = r, .shape = r->is_route ? NULL : "Track"};
-    const int result = nav_read_xml(text, size, r->name, &format, &k);
+    int result = nav_read_xml(text, size, r->name, &format, &k);
+    if (result == 0) {
+        result = fly_marks(&k);
+    }
     if (result == 0) {
         tell(&k);
     }
     free(k.points);
+    free(k.marks);
     return result;
 }

@@ -326,6 +326,15 @@ def speed_of_a_circle():
     return tool("nav", "--circle", "46,7,9000,3000,150", "--speed", "100", "--out", "no.log")
 
 
+@row("GPX route without times, no `--speed`", "landmass-nav", "refused")
+def route_without_speed():
+    with open("route.gpx", "w") as file:
+        file.write("<gpx><rte><rtept lat='46' lon='7'/><rtept lat='46.1' lon='7'/></rte></gpx>")
+    done = tool("nav", "route.gpx", "--out", "no.log")
+    assert "--speed flies them" in done.err, done.err
+    return done
+
+
 @row("`--profile` beside a `--table` of one's own", "landmass-bus", "refused")
 def profile_and_table():
     return tool("bus", "table", "--profile", "canas17", "--table", "image.tif")

@@ -192,6 +192,68 @@ TEST(a_kmz_is_its_kml_and_a_bomb_is_refused)
 }
 
 /* GDAL's writer of KML is not ours: a line from it comes back as it went in. */
+#define MARK(second, point)                                                                        \
+    "<Placemark><TimeStamp>" WHEN(second) "</TimeStamp><Point>" point "</Point></Placemark>"
+#define AT(place) "<coordinates> " place " </coordinates>"
+
+TEST(placemarks_with_a_time_and_a_point_are_flown_in_the_order_of_their_times)
+{
+    static const char text[] =
+        "<kml><Document>" MARK("02", ABSOLUTE AT("7.2,43.2,600")) MARK(
+            "00", AT("7,43,500") ABSOLUTE) "<Placemark><Point>" AT("9,9,9") "</Point></Placemark>"
+        "<Placemark><TimeStamp>" WHEN("09") "</TimeStamp></Placemark>"
+        MARK("01", AT("7.1,43.1,0")) MARK("02", AT("8,44")) MARK("03", AT("x"))
+        "<Placemark><TimeStamp><when>2020</when></TimeStamp><Point>" AT("1,1")
+        "</Point></Placemark></Document></kml>";
+    struct result r = read_kml(text);
+    const struct nav_fix *f = r.track.fix;
+    assert_int_equal(r.status, 0);
+    assert_int_equal(r.track.count, 3);
+    assert_true(f[0].time_us == INT64_C(1577836800000000) && f[0].starts_leg && !f[2].starts_leg);
+    assert_near(f[0].height_m, 500, 0);
+    assert_true(isnan(f[1].height_m));
+    assert_near(f[1].longitude_deg, 7.1, 1e-12);
+    assert_near(f[2].latitude_deg, 43.2, 1e-12);
+    assert_int_equal(r.reading.malformed, 2);
+    assert_int_equal(r.reading.disordered, 1);
+    nav_track_free(&r.track);
+}
+
+TEST(beside_a_track_placemarks_are_its_places_of_interest)
+{
+    struct result r = read_kml("<kml><Document>" MARK(
+        "02", AT("7.2,43.2,600")) "<Placemark>"
+                                  "<gx:Track xmlns:gx='x'>" WHEN("00")
+                                      COORD("7 43 0") "</gx:Track></Placemark></Document></kml>");
+    assert_int_equal(r.status, 0);
+    assert_int_equal(r.track.count, 1);
+    assert_near(r.track.fix[0].longitude_deg, 7, 1e-12);
+    nav_track_free(&r.track);
+}
+
+TEST(points_that_gdal_wrote_with_their_times_are_read_back)
+{
+    static const char csv[] =
+        "WKT,timestamp,altitudeMode\n"
+        "\"POINT Z (7.25 43.75 1500)\",2020/01/01 00:00:05,absolute\n"
+        "\"POINT Z (7.125 43.5 1000)\",2020/01/01 00:00:02,absolute\n";
+    FILE *out = fopen(path_of("marks.csv"), "w");
+    assert_non_null(out);
+    fputs(csv, out);
+    fclose(out);
+    assert_int_equal(support_run("cd %s/tmp && rm -f marks.kml && ogr2ogr -f LIBKML -a_srs "
+                                 "EPSG:4326 -oo AUTODETECT_TYPE=YES marks.kml marks.csv",
+                                 support_build_dir()),
+                     0);
+    struct result r = read_file((struct nav_reading){.is_route = false}, path_of("marks.kml"));
+    assert_int_equal(r.status, 0);
+    assert_int_equal(r.track.count, 2);
+    assert_near(r.track.fix[0].latitude_deg, 43.5, 1e-9);
+    assert_near(r.track.fix[1].height_m, 1500, 1e-9);
+    assert_true(r.track.fix[1].time_us - r.track.fix[0].time_us == 3000000);
+    nav_track_free(&r.track);
+}
+
 TEST(a_line_that_gdal_wrote_is_read_back)
 {
     static const char csv[] =
