@@ -198,11 +198,12 @@ int hs_output_claim(const char *path)
         result = hs_error(path, "name two files", "is named as two outputs");
     }
     if (result == 0) {
+        remember(name); /* first: a signal may come as soon as the file is there */
         FILE *stream = fopen(name, "wb");
         result = stream && fclose(stream) == 0 ? 0 : cannot_create(path, errno);
-    }
-    if (result == 0) {
-        remember(name);
+        if (result != 0) {
+            drop(name);
+        }
     }
     free(name);
     return result;

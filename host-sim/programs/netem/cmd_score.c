@@ -105,10 +105,6 @@ static int score(const struct nm_settings *s, const char *training, const char *
                  const struct hs_list *others, const char *out)
 {
     struct nm_chip_list list;
-    if (strcmp(set, "validation") != 0 && strcmp(set, "training") != 0) {
-        hs_error("--set", NULL, "must be validation or training, not %s", set);
-        return HS_EXIT_USAGE;
-    }
     if (nm_chip_list_read(&list, s->chips) != 0) {
         return HS_EXIT_FAILED;
     }
