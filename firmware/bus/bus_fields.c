@@ -15,6 +15,7 @@ const struct lm_bus_scale lm_bus_scales[LM_BUS_UNITS] = {
     [LM_BUS_MS] = {"ms", "ms", 1, 1, 0},
     [LM_BUS_RATE] = {"x", "x 256", 1, 1, 8},
     [LM_BUS_NUMBER] = {"number", "number", 1, 1, 0},
+    [LM_BUS_WORD] = {"word", "word", 1, 1, 0},
 };
 
 const struct lm_bus_field_info lm_bus_fields[LM_BUS_FIELDS] = {
@@ -53,6 +54,16 @@ const struct lm_bus_field_info lm_bus_fields[LM_BUS_FIELDS] = {
     [LM_BUS_EXERCISE_TIME] = {"exercise-time", LM_BUS_MS},
     [LM_BUS_EXERCISE_RATE] = {"exercise-rate", LM_BUS_RATE},
     [LM_BUS_EXERCISE_SEED] = {"exercise-seed", LM_BUS_NUMBER},
+    [LM_BUS_LIVE_LATITUDE] = {"live-latitude", LM_BUS_BAM},
+    [LM_BUS_LIVE_LONGITUDE] = {"live-longitude", LM_BUS_BAM},
+    [LM_BUS_LIVE_HEIGHT] = {"live-height", LM_BUS_M_Q6},
+    [LM_BUS_LIVE_VELOCITY] = {"live-velocity", LM_BUS_WORD},
+    [LM_BUS_LIVE_HEADING] = {"live-heading", LM_BUS_WORD},
+    [LM_BUS_LIVE_KIND] = {"live-kind", LM_BUS_WORD},
+    [LM_BUS_LIVE_RCS] = {"live-rcs", LM_BUS_DB_Q8},
+    [LM_BUS_LIVE_ACCELERATION] = {"live-acceleration", LM_BUS_WORD},
+    [LM_BUS_LIVE_REMOVE] = {"live-remove", LM_BUS_BITS},
+    [LM_BUS_LIVE_CLEAR] = {"live-clear", LM_BUS_BITS},
 };
 
 int64_t lm_bus_divide(int64_t n, int64_t divisor)

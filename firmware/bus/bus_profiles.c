@@ -41,6 +41,8 @@ enum { TEN_MILLIONTHS = 10000000 };
  * own (334), of which the specification does not say whether it is the direction from or to: from,
  * as meteorologists say it.
  *
+ * Live targets come from there as well, with the same rate and ages.
+ *
  * Variation changes by a degree in an hour of flight, so that an old one is far better than none.
  * Of its sign the specification says nothing: east is positive, as on charts.
  *
@@ -90,6 +92,16 @@ static const struct lm_bus_row canas17_rows[] = {
     ROW("weather clear",                        1807, WEATHER_CLEAR,    0, TYPE(UCHAR),   0,   255, 1000000, 3000, 10000),
     ROW("sea state",                            1808, SEA_STATE,        0, TYPE(UCHAR),   0,     8, 1000000, 3000, 10000),
     ROW("sea wind direction",                   1809, WIND_DIRECTION,   0, TYPE(FLOAT), -180,   360, 1000000, 3000, 10000),
+    ROW("live latitude",                        1810, LIVE_LATITUDE,    0, TYPE(LONG),   -90,    90, 1000000, 3000, 10000),
+    ROW("live longitude",                       1811, LIVE_LONGITUDE,   0, TYPE(LONG),  -180,   180, 1000000, 3000, 10000),
+    ROW("live height",                          1812, LIVE_HEIGHT,      0, TYPE(FLOAT), -1000, 16000, 1000000, 3000, 10000),
+    ROW("live velocity",                        1813, LIVE_VELOCITY,    0, TYPE(SHORT2), INT32_MIN, INT32_MAX, 1000000, 3000, 10000),
+    ROW("live heading",                         1814, LIVE_HEADING,     0, TYPE(SHORT2), INT32_MIN, INT32_MAX, 1000000, 3000, 10000),
+    ROW("live kind",                            1815, LIVE_KIND,        0, TYPE(UCHAR4), INT32_MIN, INT32_MAX, 1000000, 3000, 10000),
+    ROW("live cross section",                   1816, LIVE_RCS,         0, TYPE(FLOAT),  -40,    60, 1000000, 3000, 10000),
+    ROW("live remove",                          1817, LIVE_REMOVE,      0, TYPE(UCHAR),    0,   255, 1000000, 3000, 10000),
+    ROW("live clear",                           1818, LIVE_CLEAR,       0, TYPE(UCHAR),    0,   255, 1000000, 3000, 10000),
+    ROW("live acceleration",                    1819, LIVE_ACCELERATION, 0, TYPE(SHORT2), INT32_MIN, INT32_MAX, 1000000, 3000, 10000),
     ROW("wind direction",                        334, WIND_DIRECTION,   1, ANALOGUE,    -180,   360, 1000000, 3000, 10000),
     COUNT_ROW("exercise time",                  1820, EXERCISE_TIME,       TYPE(LONG),     0, INT32_MAX),
     ROW("exercise rate",                        1821, EXERCISE_RATE,    0, TYPE(FLOAT),    0,    16, 1000000, 3000, 10000),

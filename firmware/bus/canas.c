@@ -38,6 +38,9 @@ bool lm_canas_fits(enum lm_bus_field field, uint8_t type)
         return false;
     }
     const struct lm_canas_type *t = &lm_canas_types[type];
+    if (lm_bus_fields[field].unit == LM_BUS_WORD) {
+        return t->elements >= 2 && t->element_bytes * t->elements == 4;
+    }
     if (lm_bus_fields[field].unit == LM_BUS_SECONDS) {
         return is_integer(t) && t->element_bytes == 1 && t->elements >= 3;
     }
@@ -301,6 +304,10 @@ static enum lm_bus_outcome read_number(struct lm_canas *c, const struct accepted
     const struct lm_canas_type *type = &lm_canas_types[a->type];
     const uint8_t *data = a->frame->data + 4;
     uint64_t bits;
+    if (lm_bus_fields[a->row->field].unit == LM_BUS_WORD) {
+        number->q = (int32_t)big_endian_32(data);
+        return LM_BUS_VALUE;
+    }
     if (type->kind == LM_CANAS_KIND_HALF) {
         return take_half(c, a->pair, a->row->period_us, a->frame, &bits, time_us)
                    ? read_double(bits, scale, number)
@@ -348,7 +355,9 @@ static enum lm_bus_outcome accept(struct lm_canas *c, const struct lm_bus_profil
     if ((a->row->types & HALVES) != 0 && !is_half) {
         drop_half(c, a->pair);
     }
-    if (outcome == LM_BUS_VALUE || outcome == LM_BUS_NO_DATA) {
+    /* Sets of live targets leave frames out, so that codes of an identifier may jump. */
+    const bool is_counted = !lm_bus_is_live(a->row->field);
+    if (is_counted && (outcome == LM_BUS_VALUE || outcome == LM_BUS_NO_DATA)) {
         follow_sequence(c, row, channel, frame);
     }
     return outcome;

@@ -1,5 +1,6 @@
 #include "lm/weather_bus.h"
 
+#include "age.h"
 #include "fx/sat.h"
 #include "lm/status.h"
 #include "lm/units.h"
@@ -25,27 +26,14 @@ static bool part_of(enum lm_bus_field field, struct part *part)
     return false;
 }
 
-enum age { GOOD, STALE, DEAD };
-
-/* A time up to the stale age ahead of the clock counts as now. Further ahead, the clock was set
- * back. */
-static enum age age_by(uint32_t stale_us, uint32_t dead_us, uint64_t time_us, uint64_t now_us)
+static enum lm_age age_of(const struct lm_weather_bus *w, uint64_t time_us, uint64_t now_us)
 {
-    if (time_us > now_us) {
-        return time_us - now_us > stale_us ? DEAD : GOOD;
-    }
-    const uint64_t age_us = now_us - time_us;
-    return age_us > dead_us ? DEAD : age_us > stale_us ? STALE : GOOD;
+    return lm_age_of(w->stale_us, w->dead_us, time_us, now_us);
 }
 
-static enum age age_of(const struct lm_weather_bus *w, uint64_t time_us, uint64_t now_us)
+static enum lm_age age_of_sea(const struct lm_weather_sea *s, uint64_t now_us)
 {
-    return age_by(w->stale_us, w->dead_us, time_us, now_us);
-}
-
-static enum age age_of_sea(const struct lm_weather_sea *s, uint64_t now_us)
-{
-    return s->is_there ? age_by(s->stale_us, s->dead_us, s->time_us, now_us) : DEAD;
+    return s->is_there ? lm_age_of(s->stale_us, s->dead_us, s->time_us, now_us) : LM_AGE_DEAD;
 }
 
 enum { ALL = (1 << LM_WEATHER_SLOTS) - 1 };
@@ -130,7 +118,7 @@ static void add_part(struct lm_weather_bus *w, struct lm_weather_slot *s,
 static void take_sea(struct lm_weather_bus *w, struct lm_weather_sea *s,
                      const struct lm_bus_event *event)
 {
-    const bool is_good = age_of_sea(s, event->time_us) == GOOD;
+    const bool is_good = age_of_sea(s, event->time_us) == LM_AGE_GOOD;
     if (is_good && event->priority > s->priority) {
         return;
     }
@@ -185,7 +173,8 @@ void lm_weather_bus_take(struct lm_weather_bus *w, const struct lm_bus_event *ev
     }
     struct lm_weather_slot *s =
         &w->slot[(part.is_jammer ? (uint32_t)LM_RAINS_MAX : 0) + event->service];
-    if (s->is_there && s->node != event->node && age_of(w, s->time_us, event->time_us) == GOOD) {
+    if (s->is_there && s->node != event->node &&
+        age_of(w, s->time_us, event->time_us) == LM_AGE_GOOD) {
         w->count.rivals++;
         return;
     }
@@ -195,18 +184,19 @@ void lm_weather_bus_take(struct lm_weather_bus *w, const struct lm_bus_event *ev
 /* Add the sea as far as nothing is commanded. Returns true if what was added is stale. */
 static bool add_sea(struct lm_weather_bus *w, uint64_t now_us, struct lm_environment *e)
 {
-    const enum age state_age = age_of_sea(&w->state, now_us),
-                   wind_age = age_of_sea(&w->wind, now_us);
-    const bool is_state_used = state_age != DEAD && !e->is_sea_commanded;
-    const bool is_wind_used = wind_age != DEAD && !e->has_wind;
-    w->state.is_there = state_age != DEAD;
-    w->wind.is_there = wind_age != DEAD;
+    const enum lm_age state_age = age_of_sea(&w->state, now_us),
+                      wind_age = age_of_sea(&w->wind, now_us);
+    const bool is_state_used = state_age != LM_AGE_DEAD && !e->is_sea_commanded;
+    const bool is_wind_used = wind_age != LM_AGE_DEAD && !e->has_wind;
+    w->state.is_there = state_age != LM_AGE_DEAD;
+    w->wind.is_there = wind_age != LM_AGE_DEAD;
     e->sea_state = is_state_used ? (uint8_t)w->state.value : e->sea_state;
     if (is_wind_used) {
         e->has_wind = true;
         e->wind_from = (fx_bam_t)w->wind.value;
     }
-    return (is_state_used && state_age == STALE) || (is_wind_used && wind_age == STALE);
+    return (is_state_used && state_age == LM_AGE_STALE) ||
+           (is_wind_used && wind_age == LM_AGE_STALE);
 }
 
 bool lm_weather_bus_at(struct lm_weather_bus *w, uint64_t now_us, struct lm_environment *e)
@@ -214,12 +204,12 @@ bool lm_weather_bus_at(struct lm_weather_bus *w, uint64_t now_us, struct lm_envi
     bool is_any_stale = add_sea(w, now_us, e);
     for (uint32_t n = 0; n < LM_WEATHER_SLOTS; n++) {
         struct lm_weather_slot *s = &w->slot[n];
-        const enum age age = s->is_there ? age_of(w, s->time_us, now_us) : DEAD;
-        s->is_there = age != DEAD;
-        is_any_stale = is_any_stale || age == STALE;
-        if (age != DEAD && n < LM_RAINS_MAX && e->rain_count < LM_RAINS_MAX) {
+        const enum lm_age age = s->is_there ? age_of(w, s->time_us, now_us) : LM_AGE_DEAD;
+        s->is_there = age != LM_AGE_DEAD;
+        is_any_stale = is_any_stale || age == LM_AGE_STALE;
+        if (age != LM_AGE_DEAD && n < LM_RAINS_MAX && e->rain_count < LM_RAINS_MAX) {
             e->rain[e->rain_count++] = s->is.rain;
-        } else if (age != DEAD && n >= LM_RAINS_MAX && e->jammer_count < LM_JAMMERS_MAX) {
+        } else if (age != LM_AGE_DEAD && n >= LM_RAINS_MAX && e->jammer_count < LM_JAMMERS_MAX) {
             e->jammer[e->jammer_count++] = s->is.jammer;
         }
     }

@@ -81,6 +81,8 @@ static void take_events(struct lm_unit *u, const struct lm_bus_event *events, ui
         lm_nav_take(&u->nav, &events[i]);
         lm_weather_bus_take(&u->weather.bus, &events[i]);
         lm_exercise_take(&u->exercise, &events[i]);
+        lm_live_bus_take(&u->live, &events[i],
+                         u->exercise.is_told ? u->exercise.time_us : events[i].time_us);
     }
 }
 
@@ -177,6 +179,7 @@ void lm_unit_step(struct lm_unit *u, uint64_t now_us)
     take_bus(u, now_us);
     restart_after_jump(u, now_us);
     lm_unit_weather_at(&u->weather, now_us);
+    lm_live_bus_age(&u->live, now_us);
     lm_take_controls(u, now_us);
     if (lm_update_flags(u, now_us) & LM_FLAGS_REMOVING) {
         lm_picture_remove(&u->picture);

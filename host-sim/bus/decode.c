@@ -1,6 +1,7 @@
 #include "bus/decode.h"
 
 #include "bus/control_rows.h"
+#include "bus/words.h"
 #include "drv/can_log.h"
 #include "hs/error.h"
 #include "hs/progress.h"
@@ -118,15 +119,33 @@ static void print_canas(FILE *out, const struct lm_can_frame *f)
     }
 }
 
+/* The numbers of a word, each by its name. Such a row has one type. */
+static void print_word(FILE *out, const struct lm_bus_row *row, const struct bus_word_part *parts,
+                       uint32_t word)
+{
+    const struct lm_canas_type *t = &lm_canas_types[__builtin_ctz(row->types)];
+    for (unsigned i = 0; i < t->elements && i < BUS_WORD_PARTS && parts[i].name != NULL; i++) {
+        fprintf(out, "%s %s %g%s%s", i == 0 ? "" : ",", parts[i].name,
+                bus_word_number(t, word, i) * parts[i].scale, parts[i].unit[0] == 0 ? "" : " ",
+                parts[i].unit);
+    }
+}
+
 static void print_event(FILE *out, const struct lm_bus_profile *profile,
                         const struct lm_bus_event *e)
 {
     const struct lm_bus_row *row = &profile->rows[e->row];
     const struct lm_bus_scale *s = lm_bus_scale_of((enum lm_bus_field)row->field);
+    const struct bus_word_part *parts = bus_word_parts(row->field);
     const double counts = ldexp(s->multiplier, s->frac_bits) / s->divisor;
-    fprintf(out, " = %s %.*f %s", lm_bus_fields[row->field].name, counts > 1000 ? 7 : 3,
-            e->value / counts, s->bus_unit);
-    if (row->field >= LM_BUS_NAV_FIELDS && row->field < LM_BUS_WEATHER_CLEAR) {
+    fprintf(out, " = %s", lm_bus_fields[row->field].name);
+    if (parts != NULL) {
+        print_word(out, row, parts, (uint32_t)e->value);
+    } else {
+        fprintf(out, " %.*f %s", counts > 1000 ? 7 : 3, e->value / counts, s->bus_unit);
+    }
+    if ((row->field >= LM_BUS_NAV_FIELDS && row->field < LM_BUS_WEATHER_CLEAR) ||
+        lm_bus_is_live(row->field)) {
         fprintf(out, " (number %u, set %u)", e->service, e->code);
     }
     if (e->channel != 0) {

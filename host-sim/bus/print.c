@@ -1,6 +1,7 @@
 #include "bus/print.h"
 
 #include "bus/control_rows.h"
+#include "bus/words.h"
 #include "drv/can_socket.h"
 #include "hs/report.h"
 #include "lm/bus_filters.h"
@@ -228,6 +229,18 @@ static void print_header_signals(FILE *out, bool is_multiplexed)
     }
 }
 
+/* The numbers of a word, each by its name. */
+static void print_word_signals(FILE *out, const struct bus_word_part *parts,
+                               const struct lm_canas_type *t, const char *multiplex)
+{
+    for (unsigned i = 0; i < BUS_WORD_PARTS && parts[i].name != NULL; i++) {
+        const bool is_signed = t->kind == LM_CANAS_KIND_SIGNED;
+        print_signal(out, &(struct signal){parts[i].name, multiplex, 4 + i * t->element_bytes,
+                                           t->element_bytes, is_signed, parts[i].scale, 0, 0,
+                                           parts[i].unit});
+    }
+}
+
 static void print_type_signals(FILE *out, const struct lm_bus_row *row, int type,
                                const char *multiplex)
 {
@@ -235,7 +248,10 @@ static void print_type_signals(FILE *out, const struct lm_bus_row *row, int type
     const struct lm_canas_type *t = &lm_canas_types[type];
     char name[DBC_NAME_BYTES];
     snprintf(name, sizeof name, "as_%s", t->name);
-    if (type == LM_CANAS_SHORT2) {
+    const struct bus_word_part *parts_of_word = bus_word_parts(row->field);
+    if (parts_of_word != NULL) {
+        print_word_signals(out, parts_of_word, t, multiplex);
+    } else if (type == LM_CANAS_SHORT2) {
         print_signal(out,
                      &(struct signal){"value_SHORT2", multiplex, 4, 2, true, 1, -32768, 32767, ""});
         print_signal(

@@ -375,7 +375,7 @@ static int check_packed(const struct reader *r, struct item *item)
     struct lm_bus_packing *p = &item->row.packing;
     const bool is_float = p->type == LM_BUS_FLOAT;
     if (lm_bus_is_of_set((enum lm_bus_field)item->row.field)) {
-        return wrong(r, "weather needs framing canaerospace",
+        return wrong(r, "it needs framing canaerospace",
                      "comes in sets, which only message and service codes tell apart",
                      lm_bus_fields[item->row.field].name);
     }

@@ -2,9 +2,11 @@
  * 16 bytes: selector, flags, length, step of time, identifier, data. What is left over of the size
  * chooses the profile. */
 #include "fuzz.h"
+#include "fx/sat.h"
 #include "lm/bus.h"
 #include "lm/canas_service.h"
 #include "lm/exercise.h"
+#include "lm/live_bus.h"
 #include "lm/nav.h"
 #include "lm/status.h"
 #include "lm/weather_bus.h"
@@ -46,6 +48,26 @@ static void check_exercise(struct lm_exercise *x, const struct lm_bus_event *eve
     FUZZ_ASSERT(!was.is_told || x->is_told);
     FUZZ_ASSERT(x->rate_q8 == 0 || !was.is_told || x->time_us >= was.time_us ||
                 was.time_us - x->time_us >= LM_EXERCISE_STEP_US);
+}
+
+/* Whatever is believed of a live target can be reckoned on, to any time. */
+static void check_live(struct lm_live_bus *live, const struct lm_bus_event *events, uint32_t count,
+                       uint64_t now_us)
+{
+    uint32_t there = 0;
+    for (uint32_t i = 0; i < count; i++) {
+        lm_live_bus_take(live, &events[i], now_us);
+        const struct lm_live_target *t = &live->live.target[events[i].service];
+        const struct lm_live_state s = lm_live_at(t, now_us + events[i].code * 100000u);
+        FUZZ_ASSERT(t->kind < LM_LIVE_KINDS && t->reckoning < LM_LIVE_RECKONINGS);
+        FUZZ_ASSERT(s.speed_mm_s < 1 << 20);
+        FUZZ_ASSERT(fx_abs_u32((int32_t)s.position.latitude) <= FX_BAM_90);
+    }
+    lm_live_bus_age(live, now_us);
+    for (uint32_t i = 0; i < LM_LIVE_MAX; i++) {
+        there += live->live.target[i].is_there;
+    }
+    FUZZ_ASSERT(live->live.count == there && live->count.sets >= there);
 }
 
 static struct lm_can_frame take_frame(struct fuzz_supply *s, const struct lm_bus_profile *profile,
@@ -103,7 +125,8 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
     struct fuzz_supply supply = {data, size};
     struct lm_bus *bus = malloc(sizeof *bus);
     struct lm_nav *nav = malloc(sizeof *nav);
-    FUZZ_ASSERT(bus && nav);
+    struct lm_live_bus *live = calloc(1, sizeof *live);
+    FUZZ_ASSERT(bus && nav && live);
     lm_bus_init(bus, profile);
     lm_nav_init(nav);
     struct lm_weather_bus weather = {0};
@@ -125,6 +148,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
         }
         check_weather(&weather, events, count, now_us);
         check_exercise(&exercise, events, count, now_us);
+        check_live(live, events, count, now_us);
         lm_nav_at(nav, now_us + (frames & 7) * 100000u, &ownship);
         check_ownship(&ownship);
         lm_canas_service_take(&service, &frame);
@@ -138,6 +162,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
     FUZZ_ASSERT(bus->count.frames == frames && sum >= frames);
     FUZZ_ASSERT(sum == frames || profile->framing == LM_BUS_PACKED);
     FUZZ_ASSERT(sent.count == service.count.answered && sent.count <= frames);
+    free(live);
     free(nav);
     free(bus);
     return 0;

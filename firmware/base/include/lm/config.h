@@ -63,7 +63,7 @@ _Static_assert(LM_BUS_TABLES_MORE >= 1 && LM_BUS_TABLES_MORE <= 3,
 
 /* Rows of the longest bus profile (lm/bus_profile.h). 32..255. */
 #ifndef LM_BUS_ROWS_MAX
-#define LM_BUS_ROWS_MAX 64
+#define LM_BUS_ROWS_MAX 96
 #endif
 _Static_assert(LM_BUS_ROWS_MAX >= 32 && LM_BUS_ROWS_MAX <= 255, "LM_BUS_ROWS_MAX out of range");
 

@@ -19,8 +19,8 @@ struct lm_bus_event {
     uint8_t priority;   /* rank among the rows of this field: 0 is preferred */
     uint8_t channel;    /* redundancy channel, below LM_BUS_CHANNELS: 0 is preferred */
     uint8_t node;       /* sender, 1..255; 0: the frame does not tell */
-    uint8_t service;    /* CANaerospace service code; of weather: number of the circle or jammer */
-    uint8_t code;       /* CANaerospace message code; of weather: number of the set of values */
+    uint8_t service;    /* CANaerospace service code; of weather and live targets: their number */
+    uint8_t code;       /* CANaerospace message code; of these: number of the set of values */
 };
 
 /* Most events of one frame; a packed frame holds several values. */

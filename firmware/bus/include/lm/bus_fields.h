@@ -1,7 +1,7 @@
 /* Bus fields: the quantities that the display takes from the avionics bus, and their units.
  *
  * A field is a quantity such as latitude, roll or rain rate. A profile (lm/bus_profile.h) says how
- * it travels; lm/nav.h and lm/weather_bus.h use it. */
+ * it travels; lm/nav.h, lm/weather_bus.h and lm/live_bus.h use it. */
 #ifndef LM_BUS_FIELDS_H
 #define LM_BUS_FIELDS_H
 
@@ -51,6 +51,16 @@ enum lm_bus_field {
     LM_BUS_EXERCISE_TIME, /* since the exercise began: lm/exercise.h */
     LM_BUS_EXERCISE_RATE, /* seconds of the exercise in a second; 0: it stands */
     LM_BUS_EXERCISE_SEED,
+    LM_BUS_LIVE_LATITUDE, /* from here to LM_BUS_LIVE_CLEAR they belong to lm/live_bus.h */
+    LM_BUS_LIVE_LONGITUDE,
+    LM_BUS_LIVE_HEIGHT,       /* above mean sea level */
+    LM_BUS_LIVE_VELOCITY,     /* east, north: 16 bits each, in 0.05 m/s */
+    LM_BUS_LIVE_HEADING,      /* heading in 180/32768 deg, turn rate in 0.01 deg/s: 16 bits each */
+    LM_BUS_LIVE_KIND,         /* kind, dead reckoning, signature, parts: 8 bits each */
+    LM_BUS_LIVE_RCS,          /* cross section */
+    LM_BUS_LIVE_ACCELERATION, /* east, north: 16 bits each, in 0.01 m/s2 */
+    LM_BUS_LIVE_REMOVE,       /* removes the target of the service code */
+    LM_BUS_LIVE_CLEAR,        /* removes all live targets */
     LM_BUS_FIELDS
 };
 
@@ -68,6 +78,7 @@ enum lm_bus_unit {
     LM_BUS_MS,           /* milliseconds */
     LM_BUS_RATE,         /* a factor * 256 */
     LM_BUS_NUMBER,       /* a number without a unit */
+    LM_BUS_WORD,         /* two or four small numbers, as the 32 bits that they travel in */
     LM_BUS_UNITS
 };
 
@@ -90,6 +101,12 @@ struct lm_bus_field_info {
 
 extern const struct lm_bus_field_info lm_bus_fields[LM_BUS_FIELDS];
 
+/* True for the fields of lm/live_bus.h. */
+static inline bool lm_bus_is_live(uint8_t field)
+{
+    return field >= LM_BUS_LIVE_LATITUDE && field <= LM_BUS_LIVE_CLEAR;
+}
+
 /* The scale of a field, in static memory. */
 static inline const struct lm_bus_scale *lm_bus_scale_of(enum lm_bus_field field)
 {
@@ -100,7 +117,8 @@ static inline const struct lm_bus_scale *lm_bus_scale_of(enum lm_bus_field field
  * a packed profile cannot have it. */
 static inline bool lm_bus_is_of_set(enum lm_bus_field field)
 {
-    return field >= LM_BUS_NAV_FIELDS && field < LM_BUS_SEA_STATE;
+    return (field >= LM_BUS_NAV_FIELDS && field < LM_BUS_SEA_STATE) ||
+           lm_bus_is_live((uint8_t)field);
 }
 
 /* Convert `amount` from the field's unit on the bus to the unit kept, rounded to the nearest. An

@@ -39,6 +39,7 @@
 #include "lm/exercise.h"
 #include "lm/fault_log.h"
 #include "lm/keys.h"
+#include "lm/live_bus.h"
 #include "lm/nav.h"
 #include "lm/page.h"
 #include "lm/picture.h"
@@ -119,6 +120,7 @@ struct lm_unit {
     struct lm_ownship ownship; /* extrapolated to the last step */
     struct lm_unit_weather weather;
     struct lm_exercise exercise;
+    struct lm_live_bus live;
 
     struct lm_unit_map map;
     struct {
