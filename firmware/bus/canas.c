@@ -332,6 +332,10 @@ static enum lm_bus_outcome scale_number(const struct lm_bus_row *row, int64_t q,
 {
     const struct lm_bus_scale *scale = lm_bus_scale_of((enum lm_bus_field)row->field);
     const int64_t one = (int64_t)1 << scale->frac_bits;
+    if (lm_bus_fields[row->field].unit == LM_BUS_WORD) {
+        *value = (int32_t)q; /* the row's range is that of each number in it */
+        return LM_BUS_VALUE;
+    }
     if (q < row->low * one || q > row->high * one) {
         return LM_BUS_OUT_OF_RANGE;
     }
