@@ -12,9 +12,11 @@ _Static_assert(sizeof(struct lm_detail) == LM_DETAIL_HEAD_BYTES + LM_DETAIL_ITEM
 static bool item_is_sound(const struct lm_detail_item *item)
 {
     const bool is_line = item->kind == LM_DETAIL_LINE;
+    const bool is_surface = item->kind == LM_DETAIL_SURFACE;
     return item->kind >= LM_DETAIL_BLOCK && item->kind < LM_DETAIL_KINDS &&
            item->class_number < LM_DB_CLASS_NONE && item->length_dm != 0 && item->width_dm != 0 &&
-           (!is_line || item->glint_code >= item->gamma_code);
+           (!is_line || item->glint_code >= item->gamma_code) &&
+           (!is_surface || (item->glint_code <= 1 && item->height_dm >> LM_DB_CLASS_NONE == 0));
 }
 
 int lm_detail_check(const struct lm_detail *detail, uint32_t bytes, uint8_t lod, uint32_t row,

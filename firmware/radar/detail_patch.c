@@ -104,6 +104,9 @@ static uint32_t height_code(const struct lm_classes *classes, uint32_t height_dm
 static uint32_t height_codes(const struct lm_classes *classes, const struct lm_detail_item *item)
 {
     uint32_t codes = 0;
+    if (item->kind == LM_DETAIL_SURFACE) {
+        return item->height_dm; /* the classes that it covers */
+    }
     if (item->kind != LM_DETAIL_GABLE) {
         return height_code(classes, item->height_dm) * 0x11111111u;
     }
@@ -186,11 +189,12 @@ static struct lm_detail_shape shape_of(const struct lm_detail_item *item, const 
                    (int32_t)((g->overscan + g->guard) * 256) +
                    (int32_t)lm_cells_q8_of_m_q8(place->beyond_m_q8, g->cell_m_q8),
         .class_number = item->class_number,
-        .is_line = item->kind == LM_DETAIL_LINE,
+        .kind = item->kind,
+        .layer = item->kind == LM_DETAIL_SURFACE ? item->glint_code != 0 : LM_DETAIL_LAYERS - 1,
         .gamma_code = item->gamma_code,
         .height_codes = height_codes(&db->classes, item),
     };
-    if (shape.is_line) {
+    if (shape.kind == LM_DETAIL_LINE) {
         const fx_bam_t broadside = ((fx_bam_t)item->turn << 16) + FX_BAM_90;
         shape.gamma_code = line_gamma_code(item, broadside - ray, lobe);
     }
@@ -257,8 +261,26 @@ static uint32_t last_block(const struct lm_detail_shape *shape)
     return (shape->end_line - 1u) / LM_DETAIL_BLOCK_LINES;
 }
 
-/* A counting sort: how many shapes each block has, where its entries begin, and then the entries.
- * Shapes stay in their order. */
+/* Enter the shapes of a layer into the blocks that they may touch, in their order. */
+static void enter_layer(struct lm_detail_patch *p, uint32_t layer, uint16_t next[LM_DETAIL_BLOCKS])
+{
+    for (uint32_t i = 0; i < p->shape_count; i++) {
+        if (p->shape[i].layer != layer) {
+            continue;
+        }
+        const uint32_t last = last_block(&p->shape[i]);
+        for (uint32_t b = first_block(&p->shape[i]); b <= last; b++) {
+            if (next[b] == p->first[b + 1]) {
+                p->left_out++;
+            } else {
+                p->entry[next[b]++] = (uint16_t)i;
+            }
+        }
+    }
+}
+
+/* A counting sort: how many shapes each block has, where its entries begin, and then the entries,
+ * layer by layer. */
 void lm_detail_patch_close(struct lm_detail_patch *p)
 {
     uint32_t count[LM_DETAIL_BLOCKS] = {0}, total = 0;
@@ -274,15 +296,8 @@ void lm_detail_patch_close(struct lm_detail_patch *p)
         total = fx_min_u32(total + count[b], LM_DETAIL_ENTRIES_MAX);
     }
     p->first[LM_DETAIL_BLOCKS] = (uint16_t)total;
-    for (uint32_t i = 0; i < p->shape_count; i++) {
-        const uint32_t last = last_block(&p->shape[i]);
-        for (uint32_t b = first_block(&p->shape[i]); b <= last; b++) {
-            if (next[b] == p->first[b + 1]) {
-                p->left_out++;
-            } else {
-                p->entry[next[b]++] = (uint16_t)i;
-            }
-        }
+    for (uint32_t layer = 0; layer < LM_DETAIL_LAYERS; layer++) {
+        enter_layer(p, layer, next);
     }
 }
 
@@ -350,7 +365,15 @@ static void draw_glint(const struct lm_detail_shape *shape, int32_t first, int32
     }
 }
 
-/* Draw a shape into the cells of a line. Returns how many were drawn. */
+/* Draw a surface into cells first..end - 1: those of the classes that it covers. */
+static void draw_surface(const struct lm_detail_shape *shape, int32_t first, int32_t end,
+                         uint32_t *cell)
+{
+    const uint32_t by = (uint32_t)shape->gamma_code << 8 | (uint32_t)shape->class_number << 4;
+    lm_k_replace(shape->height_codes, by, cell + first, (uint32_t)(end - first));
+}
+
+/* Draw a shape into the cells of a line. Returns what that costs, in cells of a roof. */
 static uint32_t draw_shape(const struct lm_detail_shape *shape, uint32_t line, uint32_t cells,
                            struct lm_scan_line *ground)
 {
@@ -366,13 +389,20 @@ static uint32_t draw_shape(const struct lm_detail_shape *shape, uint32_t line, u
     const int32_t first = (int32_t)((shape->cell_q8 + d.from_q8 + 255) >> 8);
     const int32_t end = (int32_t)((shape->cell_q8 + d.to_q8) >> 8) + 1;
     const int32_t along_q8 = first * 256 - shape->cell_q8;
-    if (shape->is_line) {
+    if (end <= first) {
+        return 0;
+    }
+    if (shape->kind == LM_DETAIL_SURFACE) {
+        draw_surface(shape, first, end, ground->cell);
+        return (uint32_t)(end - first) / 4;
+    }
+    if (shape->kind == LM_DETAIL_LINE) {
         draw_glint(shape, first, end, ground->cell);
     } else {
         draw_roof(shape, first, end, v_q16 + (int32_t)((int64_t)shape->v_cell_q16 * along_q8 >> 8),
                   ground);
     }
-    return end > first ? (uint32_t)(end - first) : 0;
+    return (uint32_t)(end - first);
 }
 
 /* Row and column of a tile. */

@@ -22,6 +22,7 @@ static const char wall_form[] = "wall LATITUDE LONGITUDE LATITUDE LONGITUDE HEIG
 static const char line_form[] =
     "line LATITUDE LONGITUDE LATITUDE LONGITUDE fence|rail|railing|wire";
 static const char mast_form[] = "mast LATITUDE LONGITUDE HEIGHT";
+static const char strip_form[] = "surface|verge LATITUDE LONGITUDE LATITUDE LONGITUDE WIDTH CLASS";
 
 /* Reflectivity of what a line is, seen along and broadside, dB of gamma. UNSOURCED: a wire shows
  * broadside alone, a bridge's railing most. */
@@ -35,6 +36,7 @@ enum { LINE_KINDS = sizeof line_kinds / sizeof *line_kinds };
 
 static const double piece_m = 60; /* longest piece of a line: each belongs to one tile */
 static const double wall_width_m = 0.3, mast_width_m = 2;
+static const double joint_m = 0.2; /* pieces of a surface overlap by so much */
 
 struct reading {
     struct db_text_file file;
@@ -49,6 +51,8 @@ struct box {
     double latitude, longitude, length_m, width_m, turn_deg, height_m;
     enum lm_detail_kind kind;
     int line_kind; /* of LM_DETAIL_LINE */
+    int ground;    /* class of LM_DETAIL_SURFACE */
+    bool is_verge;
 };
 
 static bool read_place(char *const *words, double place[2])
@@ -80,14 +84,36 @@ static uint16_t decimetres(double metres)
     return (uint16_t)fmax(1, fmin(65535, round(10 * metres)));
 }
 
-/* A roof has the mean reflectivity that its class has at its place. */
-static uint8_t roof_code(const struct reading *r, const struct box *box)
+/* A roof or a piece of a surface has the mean reflectivity that its class has at its place. */
+static uint8_t class_code(const struct reading *r, const struct box *box, int class_number)
 {
     const double roof_m = 20;
     const double radian = 3.14159265358979323846 / 180;
-    return image_gamma_code(db_reflect_assign_cell(&r->settings->laws[r->structure],
+    return image_gamma_code(db_reflect_assign_cell(&r->settings->laws[class_number],
                                                    r->settings->seed, radian * box->latitude,
                                                    radian * box->longitude, roof_m));
+}
+
+/* The classes that a surface covers: what is there already keeps its spread. A verge covers what
+ * people paved, as bits. */
+static uint16_t covered_classes(const struct reading *r, const struct box *box)
+{
+    const struct db_class_table *table = r->settings->table;
+    uint16_t paved = 0;
+    for (int i = 0; i < table->count; i++) {
+        const bool is_paved = table->items[i].kind == DB_KIND_GROUND && !table->items[i].is_natural;
+        paved |= (uint16_t)((unsigned)is_paved << i);
+    }
+    const unsigned own = 1u << box->ground;
+    return (uint16_t)((box->is_verge ? paved : (1u << LM_DB_CLASS_NONE) - 1) & ~own);
+}
+
+static void set_surface(struct reading *r, const struct box *box, struct lm_detail_item *item)
+{
+    item->class_number = (uint8_t)box->ground;
+    item->gamma_code = class_code(r, box, box->ground);
+    item->glint_code = !box->is_verge;
+    item->height_dm = covered_classes(r, box);
 }
 
 static int add_box(struct reading *r, const struct box *box)
@@ -112,10 +138,12 @@ static int add_box(struct reading *r, const struct box *box)
     if (box->kind == LM_DETAIL_LINE) {
         at->item.gamma_code = image_gamma_code(line_kinds[box->line_kind].along_db);
         at->item.glint_code = image_gamma_code(line_kinds[box->line_kind].broadside_db);
+    } else if (box->kind == LM_DETAIL_SURFACE) {
+        set_surface(r, box, &at->item);
     } else {
         at->item.class_number =
             build_facing_number(r->settings->facing, (uint8_t)r->structure, box->turn_deg);
-        at->item.gamma_code = roof_code(r, box);
+        at->item.gamma_code = class_code(r, box, r->structure);
     }
     r->detail->reach_m = fmax(r->detail->reach_m, hypot(box->length_m, box->width_m) / 2);
     r->detail->count++;
@@ -131,7 +159,7 @@ static int add_run(struct reading *r, const double from[2], const double to[2], 
                  east_m = remainder(to[1] - from[1], 360) * degree_m * cosine;
     const double length_m = hypot(north_m, east_m);
     const int pieces = (int)fmax(1, ceil(length_m / piece_m));
-    box->length_m = length_m / pieces;
+    box->length_m = length_m / pieces + (box->kind == LM_DETAIL_SURFACE ? joint_m : 0);
     box->turn_deg = fmod(atan2(east_m, north_m) * (180 / 3.14159265358979323846) + 360, 360);
     for (int i = 0; i < pieces; i++) {
         const double share = (i + 0.5) / pieces;
@@ -215,15 +243,29 @@ static int read_mast(struct reading *r, char *const *words, int count)
     return needs_structure(r) == 0 ? add_box(r, &box) : -1;
 }
 
+static int read_strip(struct reading *r, char *const *words, int count)
+{
+    double from[2], to[2];
+    struct box box = {.kind = LM_DETAIL_SURFACE, .is_verge = strcmp(words[0], "verge") == 0};
+    if (count != 7 || !read_place(words + 1, from) || !read_place(words + 3, to) ||
+        !hs_number_within(words[5], 0.1, 1000, &box.width_m)) {
+        return db_text_error(&r->file, strip_form, "a number is missing or out of its range");
+    }
+    box.ground = db_class_find(r->settings->table, words[6]);
+    if (box.ground < 0 || r->settings->table->items[box.ground].kind == DB_KIND_STRUCTURE) {
+        return db_text_error(&r->file, "name a class of the ground, vegetation or water",
+                             "`%s` is no class of the table, or one of structures", words[6]);
+    }
+    return add_run(r, from, to, &box);
+}
+
 static int read_line(struct reading *r)
 {
     static const struct {
         const char *name;
         int (*read)(struct reading *r, char *const *words, int count);
-    } forms[] = {{"building", read_building},
-                 {"wall", read_wall},
-                 {"line", read_line_of_kind},
-                 {"mast", read_mast}};
+    } forms[] = {{"building", read_building}, {"wall", read_wall},     {"line", read_line_of_kind},
+                 {"mast", read_mast},         {"surface", read_strip}, {"verge", read_strip}};
     char *words[WORDS_MAX];
     const int count = db_text_words(r->file.line, words, WORDS_MAX);
     if (count > WORDS_MAX) {
@@ -234,7 +276,7 @@ static int read_line(struct reading *r)
             return forms[i].read(r, words, count);
         }
     }
-    return db_text_error(&r->file, "begin with building, wall, line or mast",
+    return db_text_error(&r->file, "begin with building, wall, line, mast, surface or verge",
                          "\"%s\" is none of these", words[0]);
 }
 
@@ -245,13 +287,19 @@ static int compare_u32(uint32_t a, uint32_t b)
     return (a > b) - (a < b);
 }
 
+/* Surfaces lie under all else, in their order. */
+static uint32_t height_of(const struct lm_detail_item *item)
+{
+    return item->kind == LM_DETAIL_SURFACE ? 0 : item->height_dm;
+}
+
 /* By tile; in a tile from low to high, so that a tower on a hall covers it. */
 static int compare_items(const void *first, const void *second)
 {
     const struct build_detail_item *a = first, *b = second;
     const uint32_t keys[4][2] = {{a->row, b->row},
                                  {a->column, b->column},
-                                 {a->item.height_dm, b->item.height_dm},
+                                 {height_of(&a->item), height_of(&b->item)},
                                  {a->order, b->order}};
     for (int i = 0; i < 4; i++) {
         const int order = compare_u32(keys[i][0], keys[i][1]);

@@ -93,7 +93,7 @@ static void burn(struct burning *w, const struct build_detail_item *item)
     const struct footprint p = footprint_of(&w->grid, item);
     const double reach_m = hypot(p.half_length_m, p.half_width_m) + w->grid.north_m;
     int row, row_end, column, column_end;
-    if (item->item.kind == LM_DETAIL_LINE ||
+    if (item->item.kind == LM_DETAIL_LINE || item->item.kind == LM_DETAIL_SURFACE ||
         fmin(p.half_length_m, p.half_width_m) < 0.25 * w->grid.north_m) {
         return;
     }

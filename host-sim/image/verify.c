@@ -182,11 +182,12 @@ static void check_detail(struct verify *v, uint32_t number, const struct lm_tile
     for (uint32_t i = 0; i < detail->count; i++) {
         const struct lm_detail_item *item = &detail->items[i];
         const uint8_t kind = image->db.classes.entry[item->class_number].kind;
-        if (item->kind != LM_DETAIL_LINE && kind != LM_KIND_STRUCTURE) {
+        const bool is_surface = item->kind == LM_DETAIL_SURFACE;
+        if (item->kind != LM_DETAIL_LINE && is_surface == (kind == LM_KIND_STRUCTURE)) {
             image_find(v->findings, at,
                        "entry %" PRIu32 ": item %" PRIu32
-                       " of its detail has a class that is no structure",
-                       number, i);
+                       " of its detail has a class that is %s structure",
+                       number, i, is_surface ? "a" : "no");
         }
     }
 }

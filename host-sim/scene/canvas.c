@@ -120,6 +120,7 @@ void canvas_polygon(struct canvas *c, const struct point *p, int count, const st
         return;
     }
     add_footprint(c, p, count, b);
+    canvas_add_paving(c, p, count, b);
     const int from = (int)fmax(0, ceil(low - 0.5)), to = (int)fmin(c->side, ceil(high - 0.5));
     for (int y = from; y < to; y++) {
         paint_row(c, q, count, y, b);

@@ -115,6 +115,16 @@ void detail_add_line(struct detail *d, struct point from, struct point to,
     }
 }
 
+void detail_add_strip(struct detail *d, const struct detail_strip *strip)
+{
+    struct detail_strip *added =
+        room_for(d, (void **)&d->strips, d->strip_count, sizeof *d->strips);
+    if (added) {
+        *added = *strip;
+        d->strip_count++;
+    }
+}
+
 void detail_add_fence(struct detail *d, const struct point *p, int count)
 {
     for (int i = 0; i < count; i++) {
@@ -145,5 +155,6 @@ void detail_free(struct detail *d)
     free(d->blocks);
     free(d->lines);
     free(d->masts);
+    free(d->strips);
     *d = (struct detail){0};
 }

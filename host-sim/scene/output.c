@@ -244,7 +244,7 @@ int output_description(const struct scene *s, const char *path)
 }
 
 /* Points of the detail in degrees: middles and ends of lengths of the blocks, ends of the lines,
- * masts, in this order. */
+ * masts, ends of the strips, in this order. */
 struct places {
     int count;
     struct point *at;
@@ -253,7 +253,7 @@ struct places {
 
 static int locate(struct places *where, const struct detail *d, const char *path)
 {
-    where->count = 2 * d->block_count + 2 * d->line_count + d->mast_count;
+    where->count = 2 * d->block_count + 2 * d->line_count + d->mast_count + 2 * d->strip_count;
     const size_t room = (size_t)where->count + 1;
     where->at = calloc(room, sizeof *where->at);
     where->longitude = malloc(room * sizeof *where->longitude);
@@ -272,6 +272,10 @@ static int locate(struct places *where, const struct detail *d, const char *path
     }
     for (int i = 0; i < d->mast_count; i++) {
         *next++ = d->masts[i].at;
+    }
+    for (int i = 0; i < d->strip_count; i++) {
+        *next++ = d->strips[i].from;
+        *next++ = d->strips[i].to;
     }
     return output_geographic(where->at, where->count, where->longitude, where->latitude);
 }
@@ -308,6 +312,13 @@ static void print_detail(FILE *out, const struct detail *d, const struct places 
     for (int i = 0; i < d->mast_count; i++, n++) {
         fprintf(out, "mast %.7f %.7f %.1f\n", where->latitude[n], where->longitude[n],
                 d->masts[i].height_m);
+    }
+    fprintf(out, "# surface|verge LATITUDE LONGITUDE LATITUDE LONGITUDE WIDTH CLASS\n");
+    for (int i = 0; i < d->strip_count; i++, n += 2) {
+        const struct detail_strip *s = &d->strips[i];
+        fprintf(out, "%s %.7f %.7f %.7f %.7f %.1f %s\n", s->is_verge ? "verge" : "surface",
+                where->latitude[n], where->longitude[n], where->latitude[n + 1],
+                where->longitude[n + 1], s->width_m, material_class_name(s->ground));
     }
 }
 

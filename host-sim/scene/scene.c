@@ -31,6 +31,7 @@ int scene_make(struct scene *s)
     }
     paint(s);
     canvas_trim_detail(&s->canvas);
+    canvas_trim_paving(&s->canvas);
     return s->canvas.detail.is_short ? hs_error("detail", "make the scene smaller", "out of memory")
                                      : 0;
 }

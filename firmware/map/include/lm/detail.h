@@ -32,6 +32,8 @@ enum lm_detail_kind {
     LM_DETAIL_GABLE =
         2,              /* building whose ridge runs along its length; eaves at 3/5 of its height */
     LM_DETAIL_LINE = 3, /* rail, fence, wire: it has no height, and glints when seen broadside */
+    LM_DETAIL_SURFACE = 4, /* runway, road, or their verge: paint on the ground, which keeps its
+                              elevation. Surfaces lie under all that stands */
     LM_DETAIL_KINDS
 };
 
@@ -39,12 +41,14 @@ struct lm_detail_item {
     uint8_t kind;         /* enum lm_detail_kind */
     uint8_t class_number; /* class of its cells; of a line 0, for the ground keeps its own */
     uint8_t gamma_code;   /* reflectivity code of its top, or of a line that is not broadside */
-    uint8_t glint_code;   /* of a line seen broadside, not below gamma_code; of others 0 */
+    uint8_t glint_code;   /* of a line seen broadside, not below gamma_code; of a surface its layer,
+                             0 or 1, from below; of others 0 */
     uint16_t north,
         east; /* of its middle, 1/65536 of the tile's sides from the south-west corner */
     uint16_t length_dm, width_dm; /* 1.. */
     uint16_t turn;                /* 1/65536 of a full turn */
-    uint16_t height_dm;           /* of its top above the terrain; of a line 0 */
+    uint16_t height_dm; /* of its top above the terrain; of a line 0; of a surface the classes that
+                           it covers: bit n for class n, 0..14 */
 };
 _Static_assert(sizeof(struct lm_detail_item) == LM_DETAIL_ITEM_BYTES,
                "the record must be what FORMATS.md says");
@@ -63,7 +67,8 @@ struct lm_detail {
 /* Check a record of `bytes` bytes that was read for a tile. Returns LM_OK, or LM_ERR_CORRUPT if
  * - `bytes` is not a whole number of units, or not enough for `count` items,
  * - the checksum is wrong, or the record is that of another tile,
- * - an item has an unknown kind, a class beyond 14, a side of nothing, or a glint below its gamma.
+ * - an item has an unknown kind, a class beyond 14, a side of nothing, or a glint below its gamma,
+ * - a surface covers class 15, or lies in a layer above 1.
  * Cost: that of the checksum, and some 10 instructions an item. */
 int lm_detail_check(const struct lm_detail *detail, uint32_t bytes, uint8_t lod, uint32_t row,
                     uint32_t column);

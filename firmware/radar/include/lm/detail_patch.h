@@ -23,6 +23,7 @@ enum {
     LM_DETAIL_ENTRIES_MAX = 4096,
     LM_DETAIL_BLOCK_LINES = 8,
     LM_DETAIL_BLOCKS = LM_PATCH_LINES_MAX / LM_DETAIL_BLOCK_LINES,
+    LM_DETAIL_LAYERS = 3,
     LM_DETAIL_CELLS_A_LINE = 2 * LM_CELLS_MAX /* bounds the cost of a line */
 };
 
@@ -32,9 +33,10 @@ struct lm_detail_shape {
     int32_t elevation_m_q14;  /* of the terrain there: a building stands level on it */
     /* Change of u (along the length) and v (along the width), in half sides, a line and a cell. */
     int32_t u_line_q16, u_cell_q16, v_line_q16, v_cell_q16;
-    uint32_t height_codes; /* a nibble for each eighth of |v| */
+    uint32_t height_codes; /* a nibble for each eighth of |v|; of a surface the classes it covers */
     uint8_t gamma_code, class_number;
-    bool is_line;
+    uint8_t kind;                  /* enum lm_detail_kind */
+    uint8_t layer;                 /* surfaces lie in 0 and 1, what stands in 2 */
     uint16_t first_line, end_line; /* lines that it may touch */
 };
 
@@ -65,12 +67,14 @@ void lm_detail_patch_add(struct lm_detail_patch *p, const struct lm_detail_reade
                          struct lm_tile_cache *tiles, const struct lm_patch_geometry *g,
                          fx_bam_t lobe);
 
-/* Sort the shapes by lines. Cost: some 20 instructions a shape. */
+/* Sort the shapes by lines, and in each block of lines by layers: items of different tiles may lie
+ * on each other. Cost: some 30 instructions a shape. */
 void lm_detail_patch_close(struct lm_detail_patch *p);
 
 /* Draw the detail of line `line` into its cells. `path` is the one that they were read along. Cost:
  * 5 instructions a cell, 13 for a shape that the line's block holds, 100 for one that the line
- * meets, and 5 for a cell that is drawn, at most LM_DETAIL_CELLS_A_LINE of them. */
+ * meets, and 5 for a cell that is drawn, at most LM_DETAIL_CELLS_A_LINE of them; four cells of a
+ * surface cost and count as one. */
 void lm_detail_patch_draw(const struct lm_detail_patch *p, uint32_t line,
                           const struct lm_ground_path *path, struct lm_scan_line *ground,
                           uint32_t cells);

@@ -35,7 +35,8 @@ void canvas_free(struct canvas *c);
 
 /* Places are in the axes of the design (land.h); what lies off the image is left out. A sub-pixel
  * is painted when its centre is inside. Polygons may be concave; at most 4096 corners. What is
- * built and stands out of the ground is added to the detail, too, where its middle is painted. */
+ * built and stands out of the ground is added to the detail, too, where its middle is painted.
+ * Rectangles of asphalt and concrete are added as strips. */
 void canvas_polygon(struct canvas *c, const struct point *p, int count, const struct brush *b);
 void canvas_shape(struct canvas *c, const struct shape *s, const struct brush *b);
 void canvas_disc(struct canvas *c, struct point centre, double radius_m, const struct brush *b);
@@ -45,6 +46,13 @@ void canvas_line(struct canvas *c, const struct point *p, int count, double widt
 /* Cut the blocks of the detail down to what the canvas still shows of them: what was painted later
  * covers what was painted before. Blocks of which little is left are taken out. */
 void canvas_trim_detail(struct canvas *c);
+
+/* Cut the strips of the detail into the pieces that the canvas still shows, and add their verges:
+ * one and a half pixels of the image wide, where one class grows beside the strip. */
+void canvas_trim_paving(struct canvas *c);
+
+/* Add a polygon to the strips if it is a rectangle of paving. */
+void canvas_add_paving(struct canvas *c, const struct point *p, int count, const struct brush *b);
 
 /* The material at a place, or MATERIAL_COUNT off the image. */
 enum material canvas_at(const struct canvas *c, struct point p);

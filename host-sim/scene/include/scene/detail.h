@@ -31,12 +31,22 @@ struct detail_mast {
     double height_m;
 };
 
+/* Paving as a straight strip, or the verge that lies under it and covers what paving the raster has
+ * beside it. */
+struct detail_strip {
+    struct point from, to; /* of its middle line */
+    double width_m;
+    enum material_class ground;
+    bool is_verge;
+};
+
 /* Owned by the scene; free with detail_free. */
 struct detail {
     struct detail_block *blocks;
     struct detail_line *lines;
     struct detail_mast *masts;
-    int block_count, line_count, mast_count;
+    struct detail_strip *strips;
+    int block_count, line_count, mast_count, strip_count;
     bool is_short; /* memory ran out: something is missing */
 };
 
@@ -46,6 +56,7 @@ void detail_add_footprint(struct detail *d, const struct point *p, int count,
                           const struct detail_block *what);
 void detail_add_line(struct detail *d, struct point from, struct point to,
                      enum detail_line_kind kind);
+void detail_add_strip(struct detail *d, const struct detail_strip *strip);
 /* Fence along all edges of a closed outline. */
 void detail_add_fence(struct detail *d, const struct point *p, int count);
 /* Wires between masts about `span_m` apart, which stand at both ends, too. */

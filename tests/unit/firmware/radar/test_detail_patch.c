@@ -328,6 +328,96 @@ TEST(a_line_lights_the_ground_that_it_crosses)
     assert_true(lit >= 25 && lit <= 70); /* 30 m of a fence that lies across the lines */
 }
 
+/* Add one item, of the tile of the patch's middle or of another. */
+static void add_alone(const struct scene *s, const struct lm_detail_item *item)
+{
+    reader.record.items[0] = *item;
+    reader.record.count = 1;
+    lm_detail_patch_add(&patch, &reader, &map.tiles, &s->g, FX_BAM_DEG(6));
+}
+
+/* A surface paints the cells of the classes that it covers, whose middles lie inside; ground keeps
+ * its elevation, and cells of other classes all they have. */
+TEST(a_surface_covers_the_classes_that_it_names)
+{
+    const struct scene s = scene_at(46, 60, 20000, 1);
+    uint32_t painted = 0;
+    hs_rng_seed(&rng, 21);
+    for (int n = 0; n < 20; n++) {
+        lm_detail_patch_clear(&patch, &map.db);
+        open_record(&s, 0, 0, 0);
+        struct lm_detail_item strip = random_block();
+        strip.kind = LM_DETAIL_SURFACE;
+        strip.class_number = TINY_WATER;
+        strip.gamma_code = 33;
+        strip.glint_code = (uint8_t)(n % 2);
+        strip.height_dm = 1 << TINY_SOIL;
+        put_in_patch(&s, &strip, 0.1);
+        add_alone(&s, &strip);
+        lm_detail_patch_close(&patch);
+        for (uint32_t line = 0; line < s.lines; line++) {
+            static const struct lm_ground_path nowhere;
+            for (uint32_t i = 0; i < CELLS + GUARD; i++) {
+                ground.cell[i] =
+                    (i % 3 == 0 ? 100 << 8 | TINY_TREES << 4 | 7 : 100 << 8 | TINY_SOIL << 4 | 7);
+                ground.elevation_m_q14[i] = (int32_t)i;
+            }
+            lm_detail_patch_draw(&patch, line, &nowhere, &ground, s.g.cells);
+            for (uint32_t i = 0; i < CELLS + GUARD; i++) {
+                double u, v;
+                in_item(&s, &strip, line, i, &u, &v);
+                const double off = fmax(fabs(u), fabs(v)) - 1;
+                assert_int_equal(ground.elevation_m_q14[i], i);
+                if (i % 3 == 0) {
+                    assert_int_equal(ground.cell[i], 100 << 8 | TINY_TREES << 4 | 7);
+                } else if (fabs(off) > 0.2) {
+                    assert_int_equal(ground.cell[i], off < 0 ? 33 << 8 | TINY_WATER << 4
+                                                             : 100 << 8 | TINY_SOIL << 4 | 7);
+                    painted += off < 0;
+                }
+            }
+        }
+    }
+    print_message("# %u cells painted\n", painted);
+    assert_true(painted > 500);
+}
+
+/* Whatever the order of their records: a verge lies under a surface, and both under a house. */
+TEST(surfaces_lie_in_their_layers)
+{
+    const struct scene s = scene_at(46, 60, 20000, 1);
+    struct lm_detail_item item[3] = {random_block(), random_block(), random_block()};
+    const uint8_t classes[3] = {TINY_STRUCTURE, TINY_WATER, TINY_TREES};
+    for (int first = 0; first < 3; first++) {
+        int seen[16] = {0};
+        lm_detail_patch_clear(&patch, &map.db);
+        open_record(&s, 0, 0, 0);
+        for (int k = 0; k < 3; k++) {
+            struct lm_detail_item *at = &item[(first + k) % 3];
+            const int rank = (first + k) % 3;
+            at->kind = rank == 0 ? LM_DETAIL_BLOCK : LM_DETAIL_SURFACE;
+            at->class_number = classes[rank];
+            at->glint_code = rank == 1;
+            at->height_dm = rank == 0 ? 120 : 0x7FFF;
+            at->length_dm = at->width_dm = (uint16_t)(200 + 400 * rank);
+            at->turn = 0;
+            put_in_patch(&s, at, 0);
+            add_alone(&s, at);
+        }
+        lm_detail_patch_close(&patch);
+        for (uint32_t line = 0; line < s.lines; line++) {
+            draw(&s, line);
+            for (uint32_t i = 0; i < CELLS + GUARD; i++) {
+                seen[ground.cell[i] >> 4 & 15]++;
+            }
+        }
+        /* Squares of 20, 60 and 100 m in each other. */
+        assert_true(abs(seen[TINY_STRUCTURE] - 400) < 60);
+        assert_true(abs(seen[TINY_WATER] - (3600 - 400)) < 300);
+        assert_true(abs(seen[TINY_TREES] - (10000 - 3600)) < 500);
+    }
+}
+
 /* What does not fit is left out and counted; a line draws so many cells and no more. */
 TEST(room_and_cost_are_bounded)
 {

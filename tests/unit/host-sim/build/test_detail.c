@@ -93,6 +93,40 @@ TEST(a_long_line_is_cut_into_pieces)
     build_detail_free(&d);
 }
 
+/* A strip keeps its direction and width, covers all but its own class, and its verge what is paved:
+ * classes 1 and 2 of the scene's table are the only ground that people made. The items of a record
+ * begin with them. */
+TEST(surfaces_and_verges_keep_what_the_text_says)
+{
+    struct build_detail d;
+    table.items[1].is_natural = table.items[2].is_natural = false;
+    assert_int_equal(read_text(&d,
+                               "building 46.0011 11.0003 20 10 0 5 flat\n"
+                               "surface 46.001 11.0002 46.0012 11.0004 45.5 asphalt\n"
+                               "verge 46.001 11.0002 46.0012 11.0004 7.5 trees\n"),
+                     0);
+    const double turn = atan2(0.0002 * cos(46.0011 * 0.017453292519943295), 0.0002);
+    uint32_t found[2] = {0, 0};
+    for (uint32_t i = 0; i < d.count; i++) {
+        const struct lm_detail_item *item = &d.items[i].item;
+        if (item->kind == LM_DETAIL_SURFACE) {
+            const int is_upper = item->glint_code;
+            assert_in_range(is_upper, 0, 1);
+            assert_true(fabs(item->turn * 360.0 / 65536 - turn * 57.29577951308232) < 0.01);
+            assert_int_equal(item->width_dm, is_upper ? 455 : 75);
+            assert_string_equal(table.items[item->class_number].name,
+                                is_upper ? "asphalt" : "trees");
+            assert_int_equal(item->height_dm, is_upper ? 0x7FFF - 2 : 6);
+            found[is_upper]++;
+        } else {
+            assert_int_equal(i, d.count - 1);
+        }
+    }
+    assert_int_equal(found[0], 1);
+    assert_int_equal(found[1], 1);
+    build_detail_free(&d);
+}
+
 /* Every item is in the record of its tile, records pass the firmware's check, and a later item of a
  * record is not lower than an earlier one. */
 TEST(records_hold_all_items_by_tile)
@@ -131,7 +165,10 @@ TEST(records_hold_all_items_by_tile)
 TEST(a_record_that_is_not_sound_is_refused)
 {
     struct build_detail d;
-    assert_int_equal(read_text(&d, "building 46 11 12 9 30 5 flat\n"), 0);
+    assert_int_equal(read_text(&d,
+                               "surface 46 11 46.00001 11 5 concrete\n"
+                               "surface 46 11 46.00001 11 5 asphalt\n"),
+                     0);
     const struct build_detail_record at = d.records[0];
     const uint32_t bytes = at.units * LM_DETAIL_UNIT_BYTES;
     static struct lm_detail r;
@@ -146,6 +183,8 @@ TEST(a_record_that_is_not_sound_is_refused)
         {offsetof(struct lm_detail, items) + 0, 0},
         {offsetof(struct lm_detail, items) + 0, LM_DETAIL_KINDS},
         {offsetof(struct lm_detail, items) + 1, LM_DB_CLASS_NONE},
+        {offsetof(struct lm_detail, items) + LM_DETAIL_ITEM_BYTES + 3, 2}, /* no such layer */
+        {offsetof(struct lm_detail, items) + LM_DETAIL_ITEM_BYTES - 1, 0x80},
     };
     for (size_t i = 0; i < sizeof changes / sizeof *changes; i++) {
         memcpy(&r, d.section, bytes);
@@ -178,6 +217,10 @@ TEST(a_line_that_makes_no_sense_is_refused)
         "line 46 11 46 11.001\n",
         "line 46 11 46 11.001 rope\n",
         "line 91 11 46 11.001 rail\n",
+        "surface 46 11 46 11.001 5\n",
+        "surface 46 11 46 11.001 0 asphalt\n",
+        "surface 46 11 46 11.001 5 lava\n",
+        "verge 46 11 46 11.001 5 structure\n",
         "mast 46 11\n",
         "mast 46 11 x\n",
         "mast 46 11 20 1 2 3 4 5 6 7 8\n",

@@ -91,6 +91,65 @@ TEST(a_block_is_cut_to_what_is_still_seen_of_it)
     canvas_free(&c);
 }
 
+/* A runway in the grass, crossed by a river and half covered by a concrete one: two pieces are
+ * left, each with a verge of grass on either side and one across its open end. */
+TEST(paving_is_strips_where_it_still_shows)
+{
+    struct canvas c;
+    assert_int_equal(canvas_init(&c, 100, 5), 0);
+    const struct frame f = frame_at((struct point){0, 0}, 25);
+    const struct shape field = frame_rectangle(&f, -300, -300, 300, 300),
+                       runway = frame_rectangle(&f, -150, -20, 150, 20),
+                       river = frame_rectangle(&f, -45, -300, -15, 300);
+    canvas_shape(&c, &field, &(struct brush){GRASS, 0, 0, 0});
+    canvas_shape(&c, &runway, &(struct brush){ASPHALT_NEW, 0, 0, 0});
+    canvas_shape(&c, &river, &(struct brush){RIVER_WATER, 0, 0, 0});
+    assert_int_equal(c.detail.strip_count, 1);
+    canvas_trim_paving(&c);
+    double paved_m = 0, verge_m = 0;
+    for (int i = 0; i < c.detail.strip_count; i++) {
+        const struct detail_strip *s = &c.detail.strips[i];
+        const double length = point_distance(s->from, s->to);
+        const double along = ((s->to.u - s->from.u) * f.cos + (s->to.v - s->from.v) * f.sin);
+        if (s->is_verge) {
+            assert_int_equal(s->ground, CLASS_VEGETATION);
+            assert_near(s->width_m, 7.5, 1e-9);
+            verge_m += length;
+        } else {
+            assert_int_equal(s->ground, CLASS_ASPHALT);
+            assert_near(s->width_m, 40, 1e-9);
+            assert_near(fabs(along), length, 1e-9);
+            paved_m += length;
+        }
+    }
+    /* Of ten pieces of 30 m those that the river meets are gone: two or three. */
+    assert_in_range((int)round(paved_m), 209, 241);
+    /* Along both sides, and 55 m across both ends. Those at the river lie in water, which has none
+     * that grows but the river's own class: 55 m each where 0.8 of a verge fits. */
+    assert_in_range((int)round(verge_m), 2 * 180 + 2 * 55, 2 * 240 + 4 * 55);
+    canvas_free(&c);
+}
+
+/* Painted all over, a strip is gone; a triangle, paint and what stands are none. */
+TEST(what_is_no_paving_is_no_strip)
+{
+    struct canvas c;
+    assert_int_equal(canvas_init(&c, 64, 5), 0);
+    const struct shape s = {{{-90, -10}, {90, -10}, {90, 10}, {-90, 10}}, 4};
+    const struct point triangle[] = {{-90, -10}, {90, -10}, {0, 40}};
+    canvas_shape(&c, &s, &(struct brush){ROOF_DARK, 0, 9, 0});
+    canvas_shape(&c, &s, &(struct brush){PAINT, 0, 0, 0});
+    canvas_shape(&c, &s, &(struct brush){CONCRETE, 0, 6, 0});
+    canvas_polygon(&c, triangle, 3, &(struct brush){CONCRETE, 0, 0, 0});
+    assert_int_equal(c.detail.strip_count, 0);
+    canvas_shape(&c, &s, &(struct brush){CONCRETE, 0, 0, 0});
+    assert_int_equal(c.detail.strip_count, 1);
+    canvas_shape(&c, &s, &(struct brush){GRASS, 0, 0, 0});
+    canvas_trim_paving(&c);
+    assert_int_equal(c.detail.strip_count, 0);
+    canvas_free(&c);
+}
+
 /* What the canvas takes: what is built, has a height, and is painted at its middle. */
 TEST(the_canvas_adds_what_is_built)
 {
