@@ -26,32 +26,53 @@ struct nm_settings nm_settings_default(void)
     };
 }
 
-void nm_target_options(struct nm_settings *s, struct hs_option *o)
+void nm_view_options(struct nm_settings *s, struct hs_option *o)
 {
     struct setup *t = &s->setup;
-    const struct hs_option options[] = {
+    const struct hs_option options[NM_VIEW_OPTIONS - SETUP_MODEL_OPTIONS] = {
         {"depression", HS_REAL, &t->depression_deg, 1, 89, "DEG",
          "of the line of sight below the horizon, where chips do not tell", false},
-        {"wavelength", HS_REAL, &t->wavelength_m, 0.001, 10, "M", "of the radar", false},
         {"cells", HS_INTEGER, &t->cells, 64, 1024, "N",
          "of 0.1 m, the side of the simulated picture; chips have half as many pixels", false},
         {"rays", HS_INTEGER, &t->rays_per_cell, 1, 16, "N",
          "N x N of them meet a cell of level ground", false},
         {"bounces", HS_INTEGER, &t->bounces, 1, TRACE_BOUNCES_MAX, "N", "reflections followed",
          false},
+    };
+    setup_model_options(t, o);
+    memcpy(o + SETUP_MODEL_OPTIONS, options, sizeof options);
+}
+
+void nm_law_options(struct nm_settings *s, struct hs_option *o)
+{
+    struct setup *t = &s->setup;
+    const struct hs_option options[NM_LAW_OPTIONS] = {
+        {"wavelength", HS_REAL, &t->wavelength_m, 0.001, 10, "M", "of the radar", false},
         {"resolution", HS_REAL, &t->resolution_m, 0.1, 10, "M",
          "of the radar, between -3 dB points", false},
-        {"kernel-gain", HS_REAL, &s->kernel_gain, 0, 1e9, "K",
-         "amplitude of a cell that returns everything; 0: the root of its radar cross section in\n"
-         "m^2, as calibrated MSTAR chips have it",
-         false},
         {"law", HS_WORD, &t->law, 0, 0, REFLECT_KIND_WORDS, "of the simulator before training",
          false},
         {"materials", HS_INPUT, &t->materials, 0, 0, "FILE",
          "surfaces by name, in the form that `landmass-target materials` prints", false},
     };
-    setup_model_options(t, o);
-    memcpy(o + SETUP_MODEL_OPTIONS, options, sizeof options);
+    memcpy(o, options, sizeof options);
+}
+
+void nm_target_options(struct nm_settings *s, struct hs_option *o)
+{
+    const struct hs_option gain = {
+        "kernel-gain",
+        HS_REAL,
+        &s->kernel_gain,
+        0,
+        1e9,
+        "K",
+        "amplitude of a cell that returns everything; 0: the root of its radar cross section in\n"
+        "m^2, as calibrated MSTAR chips have it",
+        false};
+    nm_view_options(s, o);
+    nm_law_options(s, o + NM_VIEW_OPTIONS);
+    o[NM_VIEW_OPTIONS + NM_LAW_OPTIONS] = gain;
 }
 
 void nm_chip_options(struct nm_settings *s, struct hs_option *o)

@@ -16,6 +16,9 @@ int nm_target_view_open(struct nm_target_view *v, const struct setup *setup,
         return hs_error("--cells", NULL, "must be even: a pixel is %d cells wide",
                         NM_CELLS_PER_PIXEL);
     }
+    if (pix_resolution_check(setup->resolution_m, setup->cell_m) != 0) {
+        return -1;
+    }
     v->setup.depression_deg = lowest_depression_deg;
     return setup_scene(&v->setup, &v->scene);
 }

@@ -31,6 +31,17 @@ void pix_taylor(int aperture, double response[PIX_KERNEL_SIDE])
     }
 }
 
+int pix_resolution_check(double resolution_m, double spacing_m)
+{
+    const double finest_m = width_in_nulls * spacing_m;
+    const double coarsest_m = finest_m * PIX_KERNEL_SIDE;
+    return resolution_m >= finest_m * (1 - 1e-9) && resolution_m <= coarsest_m * (1 + 1e-9)
+               ? 0
+               : hs_error("--resolution", "give one of them, or other cells",
+                          "cells of %g m take %.4g to %.4g m, not %g m", spacing_m, finest_m,
+                          coarsest_m, resolution_m);
+}
+
 int pix_aperture(double resolution_m, double spacing_m)
 {
     const double aperture = PIX_KERNEL_SIDE * spacing_m * width_in_nulls / resolution_m;

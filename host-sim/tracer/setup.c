@@ -168,12 +168,41 @@ struct trace_order setup_order(const struct setup *s, double azimuth_deg)
     };
 }
 
+/* How far the model goes from where it stands, level. */
+static double reach_m(const struct mesh *m)
+{
+    double reach = 0;
+    for (uint32_t i = 0; i < m->vertex_count; i++) {
+        reach = fmax(reach, hypot(m->vertices[i].x, m->vertices[i].y));
+    }
+    return reach;
+}
+
+/* What the picture would not show, or only in part, is said with its sizes. */
+static void doubt_place(const struct setup *s, const struct mesh *m)
+{
+    const double half_m = (double)s->cells * s->cell_m / 2;
+    struct vec low, high;
+    mesh_bounds(m, &low, &high);
+    if (!s->has_no_ground && low.z < -0.01) {
+        hs_warn(s->model, "move it up, or give --no-ground",
+                "reaches %.3g m below the ground, which hides that part of its %.3g m", -low.z,
+                high.z - low.z);
+    }
+    if (reach_m(m) > half_m) {
+        hs_warn(s->model, "give more --cells",
+                "reaches %.3g m from its origin, and the picture %.3g m: parts may be cut off",
+                reach_m(m), half_m);
+    }
+}
+
 int setup_scene(const struct setup *s, struct scene *scene)
 {
     struct mesh m;
     if (setup_load(s, &m) != 0) {
         return -1;
     }
+    doubt_place(s, &m);
     const struct trace_order order = setup_order(s, 0);
     const double ground_half_m =
         s->has_no_ground ? 0 : trace_ground_half_m(&order.grid, s->depression_deg);
@@ -216,6 +245,9 @@ float *setup_chip(const struct setup *s, const struct trace_records *r, int *wid
 {
     struct reflect_law law;
     const struct trace_grid *grid = &r->grid;
+    if (pix_resolution_check(s->resolution_m, grid->cell_m) != 0) {
+        return NULL;
+    }
     if (grid->cells_across % (uint32_t)s->ratio != 0 ||
         grid->cells_range % (uint32_t)s->ratio != 0) {
         hs_error("--pixel", "give a number that divides the cells",

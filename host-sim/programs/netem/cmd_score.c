@@ -19,7 +19,8 @@ static const struct hs_usage usage = {
     "training chips, and the training chip of the nearest other azimuth. --others takes lists of\n"
     "other vehicles' chips, as `register` leaves them for this model: they should fit worse."};
 
-enum { OPTIONS = NM_TARGET_OPTIONS + NM_CHIP_OPTIONS + 5 };
+enum { OWN_OPTIONS = NM_VIEW_OPTIONS + NM_LAW_OPTIONS };
+enum { OPTIONS = OWN_OPTIONS + NM_CHIP_OPTIONS + 5 };
 
 static int beside(struct nm_experiment *e, const struct nm_samples *samples, const char *path,
                   const struct nm_summary *summary, bool *is_first, bool *is_first_by_mse)
@@ -126,8 +127,9 @@ int nm_cmd_score(int argc, char **argv)
         {"seed", HS_INTEGER, &s.seed, 0, 1e15, "N", "of the division into both", false},
         {"others", HS_INPUTS, &others, 0, 0, "LIST,...", "of chips of other vehicles", false},
     };
-    nm_target_options(&s, options + 5);
-    nm_chip_options(&s, options + 5 + NM_TARGET_OPTIONS);
+    nm_view_options(&s, options + 5);
+    nm_law_options(&s, options + 5 + NM_VIEW_OPTIONS);
+    nm_chip_options(&s, options + 5 + OWN_OPTIONS);
     if (!hs_options_read(&usage, options, OPTIONS, argc, argv, &exit_code)) {
         hs_list_free(&others);
         return exit_code;

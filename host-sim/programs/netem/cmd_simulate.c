@@ -16,10 +16,11 @@ static const struct hs_usage usage = {
     "simulate", "chips of any aspect by what was learned",
     "Trace the model from each azimuth and make its chip with the learned networks and pixels:\n"
     "FOLDER/AZIMUTH.csv holds amplitudes, FOLDER/AZIMUTH.png the chip after tanh, 8-bit; near\n"
-    "range is at the bottom. Both can be given to `train` and `score` again. With --looks the\n"
+    "range is at the bottom. Response and gain are those of the training. Both can be given to "
+    "`train` and `score` again. With --looks the\n"
     "chips have speckle."};
 
-enum { OPTIONS = NM_TARGET_OPTIONS + 6 };
+enum { OPTIONS = NM_VIEW_OPTIONS + 6 };
 
 struct order {
     const char *training, *out;
@@ -129,7 +130,7 @@ int nm_cmd_simulate(int argc, char **argv)
         {"looks", HS_INTEGER, &o.looks, 0, PIX_LOOKS_MAX, "N", "of the speckle; 0: none", false},
         {"seed", HS_INTEGER, &o.seed, 0, 1e15, "N", "of the speckle", false},
     };
-    nm_target_options(&s, options + 6);
+    nm_view_options(&s, options + 6);
     if (!hs_options_read(&usage, options, OPTIONS, argc, argv, &exit_code)) {
         return exit_code;
     }

@@ -19,13 +19,22 @@ struct nm_settings {
     long batch, pretrain, epochs, pix_epochs, reach_px, seed;
 };
 
-enum { NM_TARGET_OPTIONS = SETUP_MODEL_OPTIONS + 9, NM_CHIP_OPTIONS = 8, NM_TRAIN_OPTIONS = 12 };
+enum {
+    NM_VIEW_OPTIONS = SETUP_MODEL_OPTIONS + 4,
+    NM_LAW_OPTIONS = 4,
+    NM_TARGET_OPTIONS = NM_VIEW_OPTIONS + NM_LAW_OPTIONS + 1,
+};
+enum { NM_CHIP_OPTIONS = 8, NM_TRAIN_OPTIONS = 12 };
 
 /* The defaults that --help names. */
 struct nm_settings nm_settings_default(void);
 
 /* Fill in the options of each group; `o` has room for as many as the enum says. */
-void nm_target_options(struct nm_settings *s, struct hs_option *o);
+void nm_view_options(struct nm_settings *s,
+                     struct hs_option *o); /* the model and how it is traced */
+void nm_law_options(struct nm_settings *s, struct hs_option *o); /* the simulator's own law */
+void nm_target_options(struct nm_settings *s,
+                       struct hs_option *o); /* both, and the kernel's gain */
 void nm_chip_options(struct nm_settings *s, struct hs_option *o);
 void nm_train_options(struct nm_settings *s, struct hs_option *o);
 

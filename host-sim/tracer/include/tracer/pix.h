@@ -18,6 +18,10 @@ enum {
  * samples apart. The two-dimensional response is the product of two. */
 void pix_taylor(int aperture, double response[PIX_KERNEL_SIDE]);
 
+/* Whether cells of `spacing_m` can have that resolution: the aperture is within 1..PIX_KERNEL_SIDE.
+ * Returns 0, or -1 with the error and what they can have reported. */
+int pix_resolution_check(double resolution_m, double spacing_m);
+
 /* The aperture whose response is `resolution_m` wide between the -3 dB points in samples of
  * `spacing_m`, to the nearest whole number. The wide window makes it 1.184 times the null distance.
  */

@@ -49,6 +49,22 @@ TEST(a_command_line_that_makes_no_sense_is_told_so)
                      2);
 }
 
+/* The kernel lies in the training: options that would make another one are not taken. */
+TEST(simulate_takes_no_option_that_it_would_ignore)
+{
+    static const char *const ignored[] = {"kernel-gain 2", "resolution 0.5", "wavelength 0.02"};
+    for (size_t i = 0; i < sizeof ignored / sizeof ignored[0]; i++) {
+        assert_int_equal(support_run("%s/bin/landmass-netem simulate --model slicy --training none "
+                                     "--out %s/none --%s",
+                                     support_build_dir(), folder, ignored[i]),
+                         2);
+    }
+    assert_int_equal(support_run("%s/bin/landmass-netem score --model slicy --training none "
+                                 "--chips none --out %s/none --kernel-gain 2",
+                                 support_build_dir(), folder),
+                     2);
+}
+
 TEST(a_training_killed_at_any_epoch_ends_in_the_same_file)
 {
     const char *b = support_build_dir();

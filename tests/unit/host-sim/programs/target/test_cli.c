@@ -45,6 +45,45 @@ TEST(a_command_line_without_sense_ends_with_2)
     assert_int_equal(run("render --records x.trace --azimuth 9 --out y.png"), 2);
 }
 
+/* A closed body of 7 m, moved and scaled: whatever the picture would not show is said. */
+TEST(a_model_in_the_wrong_place_or_scale_is_doubted_with_its_sizes)
+{
+    static const struct {
+        const char *command, *words;
+    } doubts[] = {
+        {"sed 's/Z/-0.5/' body > sunk.obj", "reaches 0.5 m below the ground.* of its 2 m"},
+        {"sed 's/Z/0/;s/3.5/8/' body > long.obj", "reaches 8.06 m from its origin.*picture 5.4 m"},
+        {"sed 's/Z/0/' body > millimetres.obj", "is 7e+03 m long, 2e+03 m wide and 2e+03 m high"},
+        {"sed 's/Z/0/' body > sound.obj", ""},
+    };
+    static const char *const names[] = {"sunk", "long", "millimetres --scale 1000", "sound"};
+    assert_int_equal(
+        shell("printf 'v -3.5 -1 Z\nv 3.5 -1 Z\nv 3.5 1 Z\nv -3.5 1 Z\n' > body && sed "
+              "'s/Z/T/' body > top && printf 'f 4 3 2 1\nf 5 6 7 8\nf 1 2 6 5\nf 2 3 7 6\nf 3 4 "
+              "8 7\nf 4 1 5 8\n' > faces"),
+        0);
+    for (size_t i = 0; i < sizeof names / sizeof names[0]; i++) {
+        char line[512], file[32];
+        snprintf(file, sizeof file, "%.*s.obj", (int)strcspn(names[i], " "), names[i]);
+        snprintf(line, sizeof line, "%s && sed 's/T/%s/;s/3.5/%s/' top >> %s && cat faces >> %s",
+                 doubts[i].command, i == 0 ? "1.5" : "2", i == 1 ? "8" : "3.5", file, file);
+        assert_int_equal(shell(line), 0);
+        snprintf(line, sizeof line, "render --up z --model %s%s --csv doubt.csv 2> doubts", file,
+                 names[i] + strcspn(names[i], " "));
+        assert_int_equal(run(line), 0);
+        snprintf(line, sizeof line, "cat doubts; grep -q '%s' doubts", doubts[i].words);
+        assert_int_equal(shell(doubts[i].words[0] ? line : "! grep . doubts"), 0);
+    }
+}
+
+TEST(a_resolution_that_the_cells_cannot_have_is_refused)
+{
+    assert_int_equal(run("render --model slicy --resolution 0.11 --csv fine.csv 2> errors"), 1);
+    assert_int_equal(shell("grep -q 'cells of 0.1 m take 0.1184 to 12.67 m, not 0.11 m' errors"),
+                     0);
+    assert_int_equal(run("render --model slicy --resolution 0.12 --csv fine.csv"), 0);
+}
+
 TEST(bad_input_ends_with_1_and_leaves_no_file)
 {
     assert_int_equal(shell("rm -f out.png && printf 'v 0 0 0\\nv 1 0 0\\nv 0 1 0\\nf 1 2 3\\n' "
