@@ -49,6 +49,16 @@ void model_slicy(struct mesh *m)
 
 /* ---- tank ---- */
 
+/* Skirts close the width of 3.59 m. */
+static void skirts(struct mesh *m, uint32_t steel)
+{
+    for (int side = -1; side <= 1; side += 2) {
+        const double inner = side * 1.745, outer = side * 1.795;
+        shape_box(m, (struct vec){-2.9, fmin(inner, outer), 0.72},
+                  (struct vec){2.75, fmax(inner, outer), 1.3}, steel);
+    }
+}
+
 static void hull(struct mesh *m, uint32_t steel)
 {
     const double side_view[][2] = {{2.55, 0.49}, {3.475, 0.95}, {2.2, 1.42},
@@ -57,11 +67,6 @@ static void hull(struct mesh *m, uint32_t steel)
     const double fender[][2] = {{2.7, 1.08}, {2.9, 1.2}, {2.2, 1.38}, {-3.3, 1.38}, {-3.3, 1.08}};
     shape_profile(m, fender, 5, 1.05, 1.745, steel);
     shape_profile(m, fender, 5, -1.745, -1.05, steel);
-    for (int side = -1; side <= 1; side += 2) { /* skirts close the width of 3.59 m */
-        const double inner = side * 1.745, outer = side * 1.795;
-        shape_box(m, (struct vec){-2.9, fmin(inner, outer), 0.72},
-                  (struct vec){2.75, fmax(inner, outer), 1.3}, steel);
-    }
 }
 
 /* A wheel or drum with its axle across the tank. */
@@ -93,8 +98,9 @@ static void running_gear(struct mesh *m, double right, double left, uint32_t ste
     track_run(m, -3.0, 1.0, 3.0, 1.0, right, left, steel);
 }
 
-static void turret(struct mesh *m, uint32_t steel)
+static void turret(struct mesh *m, bool has_gun, uint32_t steel)
 {
+    enum { GUN_PARTS = 2 };
     const struct shape_round parts[] = {
         {{0.2, 0, 1.42}, {0.2, 0, 1.72}, 1.2, 1.22, 72, true}, /* shell */
         {{0.2, 0, 1.72}, {0.2, 0, 2.05}, 1.22, 0.85, 72, true},
@@ -105,7 +111,8 @@ static void turret(struct mesh *m, uint32_t steel)
         {{1.2, 0, 1.75}, {6.055, 0, 1.75}, 0.1, 0.085, 36, true},         /* gun */
         {{3.5, 0, 1.75}, {4.3, 0, 1.75}, 0.13, 0.13, 36, true},           /* its bore evacuator */
     };
-    for (size_t i = 0; i < sizeof parts / sizeof parts[0]; i++) {
+    const size_t count = sizeof parts / sizeof parts[0] - (has_gun ? 0 : GUN_PARTS);
+    for (size_t i = 0; i < count; i++) {
         shape_round(m, &parts[i], steel);
     }
     shape_box(m, (struct vec){1.1, -0.3, 1.5}, (struct vec){1.5, 0.3, 1.95}, steel);
@@ -113,16 +120,32 @@ static void turret(struct mesh *m, uint32_t steel)
     shape_box(m, (struct vec){-1.75, -0.8, 1.55}, (struct vec){-1.0, 0.8, 1.9}, steel);
 }
 
-void model_tank(struct mesh *m)
+static void tank(struct mesh *m, bool is_bare)
 {
     const uint32_t steel = mesh_material(m, "metal"), rubber = mesh_material(m, "rubber");
     hull(m, steel);
+    if (!is_bare) {
+        skirts(m, steel);
+    }
     running_gear(m, 1.1, 1.68, steel, rubber);
     running_gear(m, -1.68, -1.1, steel, rubber);
-    turret(m, steel);
+    turret(m, !is_bare, steel);
+    if (is_bare) {
+        return;
+    }
     wheel(m, -3.55, 1.3, 0.12, -1.2, 1.2, rubber); /* unditching log */
     wheel(m, -3.6, 1.75, 0.28, 0.15, 1.05, steel); /* fuel drums */
     wheel(m, -3.6, 1.75, 0.28, -1.05, -0.15, steel);
+}
+
+void model_tank(struct mesh *m)
+{
+    tank(m, false);
+}
+
+static void model_tank_bare(struct mesh *m)
+{
+    tank(m, true);
 }
 
 /* ---- single reflectors, one metre a side, open towards the nose ---- */
@@ -164,6 +187,8 @@ const struct model_kind model_kinds[] = {
     {"slicy", "Sandia's test target of boxes, cylinders, dihedral and trihedral", true,
      model_slicy},
     {"tank", "a tank of a T-72's dimensions, of boxes, cylinders and plates", false, model_tank},
+    {"tank-bare", "the same without gun, skirts, drums and log, as public chips of a T-72 show it",
+     false, model_tank_bare},
     {"aircraft", "a fighter of an F-16's dimensions, of boxes, cones and plates", false,
      model_aircraft},
     {"lorry", "a lorry with a box body, 7.3 x 2.5 x 3.1 m", false, model_lorry},

@@ -384,6 +384,11 @@ TEST(the_models_have_their_dimensions)
     assert_true(fabs(high.y - low.y - 3.59) < 1e-3 && fabs(high.z - 2.23) < 1e-3 && low.z == 0);
     assert_true(fabs(high.x + 6.95 / 2 - 9.53) < 1e-3); /* muzzle to the hull's rear */
     mesh_free(&m);
+    model_find("tank-bare")->build(&m); /* no gun and no skirts: the hull alone */
+    mesh_bounds(&m, &low, &high);
+    assert_true(fabs(high.y - low.y - 3.49) < 1e-3 && fabs(high.z - 2.23) < 1e-3 && low.z == 0);
+    assert_true(fabs(high.x - low.x - 6.95) < 1e-3);
+    mesh_free(&m);
 }
 
 /* How far a ray goes before it meets the scene; 100 when it does not. */
