@@ -7,6 +7,7 @@
 #include <pcap/pcap.h>
 #include <stdbool.h>
 #include <string.h>
+#include <sys/stat.h>
 
 static bool is_read(int link)
 {
@@ -74,6 +75,18 @@ int dis_capture_next(struct dis_capture *c, struct dis_packet *packet)
     }
     return hs_error(c->path, "what stands before it was read", "packet %llu: %s",
                     (unsigned long long)c->packets + 1, pcap_geterr(c->pcap));
+}
+
+uint64_t dis_capture_size(const struct dis_capture *c)
+{
+    struct stat status;
+    return fstat(fileno(pcap_file(c->pcap)), &status) == 0 ? (uint64_t)status.st_size : 0;
+}
+
+uint64_t dis_capture_at(const struct dis_capture *c)
+{
+    const long at = ftell(pcap_file(c->pcap));
+    return at > 0 ? (uint64_t)at : 0;
 }
 
 void dis_capture_close(struct dis_capture *c)

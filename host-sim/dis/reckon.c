@@ -99,6 +99,7 @@ static void move_in_world(const double v[3], const double a[3], double t, struct
     for (int i = 0; i < 3; i++) {
         s->place_m[i] += v[i] * t + a[i] * t * t / 2;
         s->velocity_m_s[i] = v[i] + a[i] * t;
+        s->acceleration_m_s2[i] = a[i];
     }
 }
 
@@ -114,6 +115,8 @@ static void move_in_body(const struct matrix *body, const struct turning *k, con
     }
     series(turn, k->exp, now, turned);
     to_world(body, turned, s->velocity_m_s);
+    series(turn, k->exp, a, turned);
+    to_world(body, turned, s->acceleration_m_s2);
     to_world(body, moved, by_speed);
     for (int i = 0; i < 3; i++) {
         s->place_m[i] += by_speed[i];

@@ -5,7 +5,7 @@ set -eu
 bin=$1 out=$2
 here=$(dirname "$0")
 top=$here/../..
-tools='bus db nav netem radar realradar reference scene sim target'
+tools='bus db dis nav netem radar realradar reference scene sim target'
 arch=$(dpkg --print-architecture)
 version=$("$bin/landmass-db" --version | sed 's/.* //')
 # The package is reproducible: its times are those of the last commit.

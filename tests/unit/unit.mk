@@ -59,7 +59,7 @@ $(call unit_tests, host-sim/tracer,             tracer lib fixed firmware,      
 $(call unit_tests, host-sim/netem,              netem tracer lib fixed firmware)
 $(call unit_tests, host-sim/nav,                nav lib fixed firmware drivers,       nav)
 $(call unit_tests, host-sim/bus,                bus lib fixed firmware drivers)
-$(call unit_tests, host-sim/dis,                dis nav lib fixed firmware drivers,   ,         proj)
+$(call unit_tests, host-sim/dis,                dis lib fixed firmware drivers,       dis,      proj)
 $(call unit_tests, host-sim/scene,              scene lib)
 $(call unit_tests, host-sim/reference,          reference lib fixed firmware.h,      reference,     proj)
 $(call unit_tests, host-sim/sim,                sim lib fixed firmware)
@@ -115,9 +115,11 @@ endef
 $(eval $(call unit_script,bsp/panel-linux/test_package.sh))
 $(eval $(call unit_script,host-sim/package/test_package.sh))
 $(eval $(call unit_script,host-sim/programs/bus/test_forms.py))
+$(eval $(call unit_script,host-sim/programs/dis/test_dis.py))
 $(eval $(call unit_script,host-sim/programs/json/test_json.py))
 $(eval $(call unit_script,host-sim/programs/progress/test_progress.py))
 $(UNIT)/bsp/panel-linux/test_package: $(PANEL) $(wildcard bsp/panel-linux/debian/*)
 $(UNIT)/host-sim/package/test_package: $(PROGRAMS) $(wildcard host-sim/package/*)
+$(UNIT)/host-sim/programs/dis/test_dis: | $(O)/bin/landmass-dis
 $(UNIT)/host-sim/programs/json/test_json $(UNIT)/host-sim/programs/progress/test_progress: | $(HOST_TOOLS)
 $(UNIT)/host-sim/programs/bus/test_forms: | $(O)/bin/landmass-bus $(GEN)/bin/bus_table

@@ -30,6 +30,10 @@ int dis_capture_open(struct dis_capture *c, const char *path);
  * from here on. */
 int dis_capture_next(struct dis_capture *c, struct dis_packet *packet);
 
+/* Bytes of the file, and how many of them were read; for a progress bar. */
+uint64_t dis_capture_size(const struct dis_capture *c);
+uint64_t dis_capture_at(const struct dis_capture *c);
+
 void dis_capture_close(struct dis_capture *c);
 
 /* What a packet of `length` bytes is. */

@@ -29,7 +29,8 @@ enum dis_algorithm {
 /* Of an instant, in geocentric axes. */
 struct dis_state {
     double place_m[3], velocity_m_s[3];
-    double forward[3]; /* unit vector along the body */
+    double acceleration_m_s2[3]; /* of body axes: turned with them, without what the turn adds */
+    double forward[3];           /* unit vector along the body */
     double turn_rad_s[3];
 };
 

@@ -66,6 +66,7 @@ struct made_entity made_vehicle(uint16_t number)
                                 .country = 225,
                                 .category = 1,
                                 .place = {6378137, 0, 0},
+                                .orientation = {1.57079633F, 0, 0},
                                 .algorithm = 2,
                                 .marking = "CAR"};
 }

@@ -31,7 +31,8 @@ struct made_entity {
     const char *marking;
 };
 
-/* A vehicle of version 7 in exercise 1 that stands on the equator. */
+/* A vehicle of version 7 in exercise 1 that stands on the equator and points
+ * east. */
 struct made_entity made_vehicle(uint16_t number);
 
 /* Append a PDU to the datagram. The length in its header is that of what is appended. */

@@ -441,6 +441,26 @@ def kept(r, text):
     assert near(r["span_s"], span, 0.1) and near(r["median_interval_s"], interval, 0.01)
 
 
+def dis():
+    import struct
+    body = struct.pack(">HHHBB", 1, 2, 3, 1, 0) + 2 * struct.pack(">BBHBBBB", 1, 1, 225, 6, 0, 0, 0)
+    body += struct.pack(">3f3d3fI", 0, 5, 0, 6378137, 0, 0, 1.5, 0, 0, 0) + b"\2" + bytes(39) + b"\1CAR" + bytes(12)
+    with open(here("one.pdu"), "wb") as file:
+        file.write(struct.pack(">BBBBIHH", 7, 1, 1, 1, 0, 12 + len(body), 0) + body + b"\7odd")
+    document, text = run("dis", "--pdu", here("one.pdu"), "--out", here("dis.log"))
+    r = document["report"]
+    assert [r["datagrams"], r["pdus"], r["entity_states"], r["entity_state_updates"], r["commands"], r["other_pdus"]] == \
+        find(r"^datagrams: (\d+) with (\d+) PDUs: (\d+) entity states, (\d+) updates, (\d+) commands, (\d+) others", text)
+    assert [sum(r["refused"].values()), r["refused"]["header"]] == find(r"^refused: (\d+); (\d+) no whole header", text) == [1, 1]
+    assert [r["entities"], r["entities_skipped"]] == find(r"^entities: (\d+); (\d+) skipped", text)
+    assert [r["sets"], r["new_sets"], r["removals"], r["frames"]] == \
+        find(r"^sent: (\d+) sets \((\d+) new.* and (\d+) removals, (\d+) frames", text)
+    with open(here("dis.log")) as file:
+        assert r["frames"] == len(file.readlines())
+    (entity,) = r["entities_at_end"]
+    assert entity["id"] == "1:2:3" and entity["marking"] == "CAR" and entity["target_kind"] == "car"
+
+
 def nav():
     document, text = run("nav", "--straight", "42.045,-29.18,90,3000,180", "--seconds", "20", "--out", here("flight.log"))
     r = document["report"]
@@ -773,7 +793,7 @@ def the_document_lists_every_command():
 CHECKS = {"db import": db_import, "db train": db_train, "db segment": db_segment, "db correct": db_correct,
           "db vectors": db_vectors, "db reflect": db_reflect, "db infrared": db_infrared,
           "db build": db_build, "db inspect": db_inspect, "db convert": db_convert, "db verify": db_verify, "db qgis": db_qgis, "db export": db_export,
-          "db picture": db_picture, "scene": scene, "nav": nav, "bus decode": bus_decode, "bus fields": bus_fields,
+          "db picture": db_picture, "scene": scene, "nav": nav, "dis": dis, "bus decode": bus_decode, "bus fields": bus_fields,
           "bus table": bus_table, "bus dbc": bus_dbc, "bus filters": bus_filters, "bus reports": bus_reports,
           "bus controls": bus_controls, "sim": sim,
           "radar print": radar_print, "radar check": radar_check, "radar record": radar_record,
