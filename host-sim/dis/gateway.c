@@ -1,5 +1,6 @@
 #include "dis/gateway.h"
 
+#include "dis/clock.h"
 #include "entities.h"
 #include "hs/error.h"
 
@@ -39,6 +40,7 @@ struct dis_gateway {
     double frames_left; /* that may be sent now */
     int64_t step_us, sweep_us, choose_us, slot_us;
     bool has_stepped, is_frozen;
+    struct dis_clock clock;
     int64_t frozen_us;
     bool has_ownship_place;
     struct dis_place ownship_place;
@@ -243,6 +245,7 @@ static void take_command(struct dis_gateway *g, const struct dis_command *c, int
         return;
     }
     g->is_frozen = !c->is_start;
+    dis_clock_set(&g->clock, g->is_frozen, now_us);
     if (!c->is_start) {
         g->frozen_us = now_us;
         return;
@@ -359,7 +362,7 @@ static double rank_of(const struct dis_gateway *g, const struct entity *e, int64
 {
     const bool has_number = e->number != NO_NUMBER;
     if (!g->has_ownship_place && !g->set.has_centre) {
-        return has_number ? -INFINITY : (double)e->first_us;
+        return has_number ? -(double)INFINITY : (double)e->first_us;
     }
     const struct dis_state s = dis_reckon(&e->motion, since_s(g, e, now_us));
     const struct dis_place place = dis_place_of(s.place_m);
@@ -430,6 +433,18 @@ static void put(struct dis_gateway *g, const struct lm_can_frame *frame, int64_t
     g->frames_left -= 1;
     g->count.frames++;
     g->count.refused_frames += !g->sink.send(g->sink.context, frame, at_us);
+}
+
+static void put_clock(struct dis_gateway *g, int64_t now_us)
+{
+    struct lm_can_frame frames[DIS_CLOCK_FRAMES];
+    if (!g->set.tells_clock || g->frames_left < DIS_CLOCK_FRAMES) {
+        return;
+    }
+    const int count = dis_clock_frames(&g->clock, g->set.node, now_us, frames);
+    for (int i = 0; i < count; i++) {
+        put(g, &frames[i], now_us);
+    }
 }
 
 static void put_removals(struct dis_gateway *g, int64_t now_us)
@@ -546,6 +561,7 @@ void dis_gateway_step(struct dis_gateway *g, int64_t now_us)
         g->choose_us = now_us;
         choose(g, now_us);
     }
+    put_clock(g, now_us);
     put_removals(g, now_us);
     put_targets(g, now_us);
 }

@@ -4,9 +4,9 @@
 #include <string.h>
 
 #define DEG                   (180 / 3.14159265358979323846)
-#define SPEED_MAX_M_S         1000.0
+#define SPEED_MAX_M_S         999.9 /* the display refuses 1,000, and both components are rounded */
 #define ACCELERATION_MAX_M_S2 300.0
-#define TURN_MAX_DEG_S        300.0
+#define TURN_MAX_DEG_S        60.0
 #define METRES_A_DEGREE       111320.0
 
 enum { HEIGHT_LOWEST_M = -1000, HEIGHT_HIGHEST_M = 16000 };

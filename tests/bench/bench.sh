@@ -105,6 +105,11 @@ else
     echo "No build/run/scene.lmdb (make run): no tiles counted"
 fi
 
+if [ -x "$build/bin/landmass-dis" ]; then
+    python3 -B "$here/dis.py" "$build/bin/landmass-dis"
+    echo
+fi
+
 if [ -r "$here/classifier.sh" ]; then
     echo
     sh "$here/classifier.sh" "$build"

@@ -148,6 +148,10 @@ static bool read_table(struct command *c, struct raw *raw, int argc, char **argv
          "tell it at once when the display has it this far off", false},
         {"threshold-heading", HS_REAL, &s->threshold_deg, 0.1, 180, "DEG", "or turned by this much",
          false},
+        {"clock", HS_FLAG, &s->tells_clock, 0, 0, NULL,
+         "tell the displays an exercise clock too: 0 when the run begins, and standing while the "
+         "exercise is frozen",
+         false},
         {"Which entities become targets", HS_HEADING, NULL, 0, 0, NULL, "", false},
         {"exercise", HS_TAKER, &raw->exercises, 0, 0, "N[,N...]",
          "take these exercises; left out: all", false},

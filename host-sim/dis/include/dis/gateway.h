@@ -28,6 +28,7 @@ struct dis_settings {
     bool has_centre; /* the nearest to this place come first */
     struct dis_place centre;
     struct dis_sea_level sea;
+    bool tells_clock;   /* dis/clock.h */
     double timeout_s;   /* silence after which an entity is removed */
     double heartbeat_s; /* each target is told at least so often */
     double threshold_m, threshold_deg;

@@ -122,7 +122,8 @@ TEST(local_axes_are_the_directions_in_which_the_place_changes)
 
 TEST(what_is_not_near_the_earth_is_said_so)
 {
-    static const double far_m[][3] = {{0, 0, 0}, {NAN, 0, 0}, {INFINITY, 0, 0}, {0, 7.4e6, 0}};
+    static const double far_m[][3] = {
+        {0, 0, 0}, {(double)NAN, 0, 0}, {(double)INFINITY, 0, 0}, {0, 7.4e6, 0}};
     for (size_t i = 0; i < sizeof far_m / sizeof *far_m; i++) {
         assert_false(dis_is_near_earth(far_m[i]));
     }

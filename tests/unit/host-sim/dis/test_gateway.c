@@ -314,7 +314,7 @@ GATEWAY_TEST(the_share_of_the_bus_is_never_exceeded_and_256_targets_need_less)
                   frames_s * 135 / 1e4);
     assert_true(counts()->late == 0 && frames_s * 135 < 0.4e6);
     for (int i = 0; i + 400 < sent.count; i++) { /* 400 frames of 135 bits in 40 % of a Mbit/s */
-        assert_true(sent.time_us[i + 400] - sent.time_us[i] > 0.9 * 400 * 135 / 0.4);
+        assert_true((double)(sent.time_us[i + 400] - sent.time_us[i]) > 0.9 * 400 * 135 / 0.4);
     }
 }
 
@@ -354,6 +354,43 @@ GATEWAY_TEST(a_frozen_exercise_stands_and_does_not_age)
     const double moved_m =
         (dis_gateway_entity(gateway, 0, now_us).place.longitude_deg - there) * 111319.5;
     assert_true(fabs(moved_m - 100) < 0.1);
+}
+
+/* Milliseconds that the last 1820 told, and whether the rate before it was 0. */
+static int32_t told_ms(bool *is_standing)
+{
+    for (int i = sent.count - 1; i > 0; i--) {
+        const uint8_t *d = sent.frame[i].data, *before = sent.frame[i - 1].data;
+        if (sent.frame[i].id == 1820) {
+            assert_true(d[1] == 3 && before[1] == 2 && sent.frame[i - 1].id == 1821);
+            *is_standing = before[4] == 0;
+            return (int32_t)((uint32_t)d[4] << 24 | (uint32_t)d[5] << 16 | (uint32_t)d[6] << 8 |
+                             d[7]);
+        }
+    }
+    return -1;
+}
+
+GATEWAY_TEST(the_exercise_clock_runs_with_the_exercise_and_stands_with_it)
+{
+    struct dis_settings s = usual();
+    struct made stop = {.length = 0}, start = {.length = 0};
+    bool is_standing;
+    s.tells_clock = true;
+    begin(&s);
+    wait_s(10);
+    assert_true(told_ms(&is_standing) == 10000 && !is_standing && sent_of(1820) == 11);
+    made_stop(&stop, 1, 2);
+    wait_s(0.25);
+    give(&stop);
+    assert_true(told_ms(&is_standing) == 10250 && is_standing);
+    wait_s(5);
+    assert_true(told_ms(&is_standing) == 10250 && is_standing);
+    made_start(&start, 1, 0, 0);
+    give(&start);
+    assert_true(told_ms(&is_standing) == 10250 && !is_standing);
+    wait_s(2);
+    assert_int_equal(told_ms(&is_standing), 12250);
 }
 
 GATEWAY_TEST(an_absolute_timestamp_that_agrees_with_the_clock_gives_the_instant)

@@ -8,7 +8,7 @@
 #include <string.h>
 
 static const struct dis_sea_level no_geoid = {NULL, 0};
-static const struct dis_kind car = {.kind = 2, .rcs_dbsm = NAN, .is_on_ground = true};
+static const struct dis_kind car = {.kind = 2, .rcs_dbsm = (double)NAN, .is_on_ground = true};
 static const struct dis_kind jet = {.kind = 7, .rcs_dbsm = 4.5, .signature = 3};
 
 /* A motion at a place with local velocity east, north, up and a heading, wings level. */
@@ -102,6 +102,10 @@ TEST(a_turn_to_the_right_is_positive)
     m.turn_rad_s[2] = 0.1; /* about the body's z, which points down */
     assert_int_equal(dis_target_of(&m, &car, &no_geoid, 0, &t), DIS_FIT);
     assert_int_equal(t.turn_0d01_s, 573);
+    m.turn_rad_s[2] = 5; /* a spinning thing: the display refuses more than 60 degrees a second */
+    assert_int_equal(dis_target_of(&m, &car, &no_geoid, 0, &t), DIS_FIT);
+    assert_int_equal(t.turn_0d01_s, 6000);
+    m.turn_rad_s[2] = 0.1;
     assert_int_equal(dis_target_of(&m, &car, &no_geoid, 2, &t), DIS_FIT);
     assert_true(abs(t.heading_bam16 - (int)(11.459 / 180 * 32768)) <= 2);
 }
