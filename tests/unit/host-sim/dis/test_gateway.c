@@ -216,6 +216,29 @@ GATEWAY_TEST(a_deactivated_entity_is_removed_at_once)
     assert_int_equal(sent_of(1815), 1);
 }
 
+GATEWAY_TEST(who_stays_is_still_known_when_others_leave)
+{
+    const struct dis_settings s = usual();
+    struct made_entity e = made_vehicle(1);
+    begin(&s);
+    for (uint16_t i = 1; i <= 40; i++) {
+        e.id[2] = i;
+        give_vehicle(&e);
+    }
+    e.appearance = 1U << 23;
+    for (uint16_t i = 1; i <= 40; i += 3) {
+        e.id[2] = i;
+        give_vehicle(&e);
+    }
+    e.appearance = 0;
+    for (uint16_t i = 2; i <= 40; i += 3) {
+        e.id[2] = i;
+        give_vehicle(&e);
+    }
+    assert_true(counts()->entities == 40 && counts()->deactivated == 14);
+    assert_int_equal(dis_gateway_entities(gateway), 26);
+}
+
 GATEWAY_TEST(what_the_table_skips_or_does_not_know_is_counted_once)
 {
     const struct dis_settings s = usual();
