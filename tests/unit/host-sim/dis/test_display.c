@@ -107,7 +107,7 @@ TEST(the_display_has_every_entity_within_the_threshold_for_every_model)
         }
     }
     print_message("# worst: %.2f m\n", worst_m);
-    assert_true(worst_m < 2.5);
+    assert_true(worst_m < 0.5);
     assert_int_equal(live.live.count, VEHICLES);
     assert_true(live.count.torn == 0 && live.count.refused == 0 && live.count.rivals == 0);
     assert_int_equal(live.count.sets, dis_gateway_counts(g)->sets);
