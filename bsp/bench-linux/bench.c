@@ -77,6 +77,7 @@ int bench_open(struct bench *b, const struct bench_scene *scene, const struct be
                                  .can = bus->can,
                                  .bus_profile = bus->profile,
                                  .can_2 = bus->can_2,
+                                 .bus_nodes = bus->nodes,
                                  .bus_node = bus->node,
                                  .is_heading_magnetic = bus->is_heading_magnetic,
                                  .tells_reports = bus->tells_reports,

@@ -26,6 +26,7 @@ struct bench_bus {
     const struct lm_bus_profile *profile;             /* NULL: the database's, or canas17 */
     const struct lm_can *can_2;                       /* borrowed; NULL: there is one interface */
     struct lm_board_table tables[LM_BUS_TABLES_MORE]; /* heard besides */
+    const uint8_t *nodes;                             /* borrowed: lm_bus_hear_only; NULL: all */
     uint8_t node;             /* the unit's own CANaerospace node; 0: it only listens */
     bool is_heading_magnetic; /* LM_BUS_HEADING is from magnetic north */
     bool tells_reports;       /* it tells lm/canas_report.h as that node */

@@ -135,6 +135,22 @@ static bool take_profile(const char *text, void *value)
     return profile != NULL || is_automatic;
 }
 
+static bool take_nodes(const char *text, void *value)
+{
+    struct config_nodes nodes = {.is_list = strcmp(text, "all") != 0};
+    while (nodes.is_list && text != NULL) {
+        const size_t length = strcspn(text, ",");
+        const uint32_t node = whole_number(text, length, 255);
+        if (node == UINT32_MAX || node == 0) {
+            return false;
+        }
+        nodes.bits[node / 8] |= (uint8_t)(1u << node % 8);
+        text = text[length] == ',' ? text + length + 1 : NULL;
+    }
+    memcpy(value, &nodes, sizeof nodes);
+    return true;
+}
+
 static bool take_axis(const char *text, void *value)
 {
     struct drv_stick_axis axis = {.is_inverted = text[0] == '-'};
@@ -188,6 +204,8 @@ static bool take(struct config *c, const struct config_row *row, const char *tex
         return take_choice(row, text, value);
     case CONFIG_PROFILE:
         return take_profile(text, value);
+    case CONFIG_NODES:
+        return take_nodes(text, value);
     case CONFIG_SIZE:
         return take_size(row, text, value);
     case CONFIG_DEVICE:

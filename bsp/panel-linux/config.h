@@ -10,6 +10,7 @@
 
 #include "drv/blit.h"
 #include "drv/stick.h"
+#include "lm/bus_event.h"
 #include "lm/bus_profile.h"
 #include "lm/controls.h"
 
@@ -28,6 +29,12 @@ struct config_size {
     uint16_t width_px, height_px; /* 0, 0: not chosen */
 };
 
+/* Nodes of the bus that are heard. */
+struct config_nodes {
+    bool is_list; /* false: all */
+    uint8_t bits[LM_BUS_NODE_BYTES];
+};
+
 /* Hand controller: the USB device to use. */
 struct config_stick {
     enum { CONFIG_STICK_NONE, CONFIG_STICK_AUTO, CONFIG_STICK_NAMED } choice;
@@ -44,6 +51,7 @@ struct config {
     char can_2[CONFIG_NAME];                    /* a second interface */
     const struct lm_bus_profile *can_2_profile; /* NULL: can_2_table, or canas17 */
     char can_2_table[CONFIG_PATH];
+    struct config_nodes can_nodes;
     uint32_t can_node;
     uint32_t can_heading;  /* 1: magnetic */
     uint32_t can_reports;  /* 1: on */

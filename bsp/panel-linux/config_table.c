@@ -41,6 +41,9 @@ const struct config_row config_table[] = {
            "What its frames mean. auto: can2.table, or canas17 where there is none."),
     OPTION(CONFIG_PATH_TO, can_2_table, 0, ROOM(can_2_table), "none", "can2.table", "PATH | none",
            "none", "Table of the second bus; as can.table."),
+    OPTION(CONFIG_NODES, can_nodes, 0, 0, NULL, "can.nodes", "N,N,... | all", "all",
+           "Nodes of the bus that are heard, 1..255 each; in NMEA 2000 the addresses of sources. "
+           "Frames of others are refused and counted."),
     OPTION(
         CONFIG_NUMBER, can_node, 0, 255, NULL, "can.node", "0..255", "0",
         "The panel's node on a CANaerospace bus, where it answers requests; 0: it only listens."),

@@ -12,6 +12,7 @@ enum config_kind {
     CONFIG_CHOICE,  /* stored as the number of the word */
     CONFIG_PROFILE, /* a bus profile, by its name in lm_bus_profiles; stored as a pointer.
                      * auto: NULL */
+    CONFIG_NODES,   /* numbers 1..255 between commas, stored as struct config_nodes */
     CONFIG_SIZE,
     CONFIG_DEVICE,
     CONFIG_AXIS,
@@ -28,7 +29,7 @@ struct config_row {
     const char *words; /* CHOICE: its words; TEXT, PATH_TO, SIZE: the word for an empty one */
 };
 
-enum { CONFIG_ROWS = 106 };
+enum { CONFIG_ROWS = 107 };
 extern const struct config_row config_table[CONFIG_ROWS];
 
 #endif

@@ -1,6 +1,7 @@
 /* The loop of the panel, and what makes the process a real-time one. */
 #include "panel.h"
 
+#include "lm/bit.h"
 #include "report.h"
 
 #include <errno.h>
@@ -62,6 +63,9 @@ static void report_counters(const struct panel *p)
            "%u sent, %u unsent",
            u->count.bus_frames, bus->count.overflowed, bus->count.malformed, bus->count.down,
            bus->count.gone, bus->count.bus_off, bus->count.sent, bus->count.unsent);
+    const struct lm_sender_counts senders = lm_sender_counts(u);
+    report(REPORT_INFO, "senders: %u frames stuck, %u of rivals, %u disagree, %u not on the list",
+           senders.stuck, senders.rivals, senders.disagreements, senders.refused);
     report(REPORT_INFO, "flash: %u tiles, %u bytes, %u read again, %u failed, %u corrupt",
            u->map.tiles.count.tiles_read, (unsigned)u->map.tiles.count.bytes_read,
            atomic_load(&p->flash.count.again), atomic_load(&p->flash.count.failed),

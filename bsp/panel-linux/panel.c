@@ -191,21 +191,23 @@ static void start_with_buses(struct panel *p)
 static int start_unit(struct panel *p, const struct lm_flash *flash)
 {
     const size_t pixels = (size_t)p->glass.port.width_px * p->glass.port.height_px;
-    p->board = (struct lm_board){.flash = flash,
-                                 .can = &p->bus.port,
-                                 .bus_node = (uint8_t)p->config->can_node,
-                                 .is_heading_magnetic = p->config->can_heading != 0,
-                                 .tells_reports = p->config->can_reports != 0,
-                                 .obeys_controls = p->config->can_controls != 0,
-                                 .controls = &p->controls,
-                                 .display = &p->glass.port,
-                                 .tile_pool_bytes = p->config->tiles * sizeof(struct lm_tile),
-                                 .noise_seed = p->config->seed,
-                                 .options = {.is_sector_whole = p->config->glass_sector != 0,
-                                             .has_heading = p->config->glass_heading != 0,
-                                             .has_strobe = p->config->glass_strobe != 0,
-                                             .has_borders = p->config->glass_borders != 0},
-                                 .flash_poll_limit = START_POLLS};
+    p->board = (struct lm_board){
+        .flash = flash,
+        .can = &p->bus.port,
+        .bus_nodes = p->config->can_nodes.is_list ? p->config->can_nodes.bits : NULL,
+        .bus_node = (uint8_t)p->config->can_node,
+        .is_heading_magnetic = p->config->can_heading != 0,
+        .tells_reports = p->config->can_reports != 0,
+        .obeys_controls = p->config->can_controls != 0,
+        .controls = &p->controls,
+        .display = &p->glass.port,
+        .tile_pool_bytes = p->config->tiles * sizeof(struct lm_tile),
+        .noise_seed = p->config->seed,
+        .options = {.is_sector_whole = p->config->glass_sector != 0,
+                    .has_heading = p->config->glass_heading != 0,
+                    .has_strobe = p->config->glass_strobe != 0,
+                    .has_borders = p->config->glass_borders != 0},
+        .flash_poll_limit = START_POLLS};
     p->board.tile_pool = calloc(1, p->board.tile_pool_bytes);
     p->board.plane = calloc(1, pixels);
     p->unit = calloc(1, sizeof *p->unit);

@@ -9,6 +9,11 @@ void lm_bus_init(struct lm_bus *b, const struct lm_bus_profile *profile)
     *b = (struct lm_bus){.profile = profile};
 }
 
+void lm_bus_hear_only(struct lm_bus *b, const uint8_t *nodes)
+{
+    b->canas.nodes = nodes;
+}
+
 /* Number of a redundant sender: the identifier's bits under the mask, moved together to the
  * right. */
 static uint32_t channel_of(uint32_t id, uint32_t mask)
@@ -72,6 +77,11 @@ static uint32_t take_packed(struct lm_bus *b, const struct lm_can_frame *frame,
     }
     if (first == p->row_count || frame->length > 8) {
         b->count.outcome[first == p->row_count ? LM_BUS_UNUSED : LM_BUS_BAD_LENGTH]++;
+        return 0;
+    }
+    if (p->channel_mask != 0 &&
+        !lm_bus_is_heard(b->canas.nodes, (uint8_t)channel_of(frame->id, p->channel_mask))) {
+        b->count.outcome[LM_BUS_NODE_REFUSED]++;
         return 0;
     }
     if (p->rows[first].packing.is_fast) {

@@ -1,6 +1,7 @@
 #include "lm/canas.h"
 
 #include "fx/float_bits.h"
+#include "fx/sat.h"
 
 #define HALVES (1u << LM_CANAS_DOUBLEH | 1u << LM_CANAS_DOUBLEL)
 
@@ -132,11 +133,21 @@ static void follow_sequence(struct lm_canas *c, uint32_t row, uint32_t channel,
 {
     const uint8_t node = frame->data[0], code = frame->data[3];
     const uint8_t expected = (uint8_t)(c->last[row][channel].code + 1);
-    if (c->last[row][channel].node == node && code != expected) {
+    const bool is_known = c->last[row][channel].node == node;
+    const bool is_still = is_known && code == c->last[row][channel].code;
+    if (is_known && code != expected) {
         c->count.sequence_breaks++;
     }
+    c->last[row][channel].has_counted =
+        is_known && (c->last[row][channel].has_counted || !is_still);
+    const uint32_t still = is_still ? c->last[row][channel].still + 1u : 1;
+    c->last[row][channel].still = (uint8_t)fx_min_u32(still, LM_CANAS_STILL);
     c->last[row][channel].node = node;
     c->last[row][channel].code = code;
+    if (still >= LM_CANAS_STILL && c->last[row][channel].has_counted) {
+        c->count.stuck++;
+        c->stuck_node = node;
+    }
 }
 
 static void drop_half(struct lm_canas *c, struct lm_canas_pair *p)
@@ -354,6 +365,9 @@ static enum lm_bus_outcome accept(struct lm_canas *c, const struct lm_bus_profil
     a->pair = &c->pair[a->row->field == LM_BUS_LONGITUDE][channel];
     const enum lm_bus_outcome outcome =
         is_assumed ? check_assumed(a->type, frame) : check_header(a->row, frame);
+    if (frame->length > 0 && !lm_bus_is_heard(c->nodes, frame->data[0])) {
+        return LM_BUS_NODE_REFUSED;
+    }
     const bool is_half =
         outcome == LM_BUS_VALUE && lm_canas_types[a->type].kind == LM_CANAS_KIND_HALF;
     if ((a->row->types & HALVES) != 0 && !is_half) {

@@ -92,7 +92,7 @@ void lm_overlay_labels(const struct lm_glass *g, const struct lm_page *page)
 
 static const char flag_words[LM_FLAGS][9] = {"NAV",      "NAV FAIL", "DB FAIL", "TILE",   "BUS",
                                              "FZ",       "OFF MAP",  "NO RAD",  "UNABLE", "WX",
-                                             "BLW TERR", "MAG HDG",  "EXC"};
+                                             "BLW TERR", "MAG HDG",  "EXC",     "SENDER"};
 
 const char *lm_flag_word(uint32_t number)
 {
@@ -124,6 +124,7 @@ void lm_overlay_warnings(const struct lm_glass *g, uint32_t flags,
         const uint32_t flag = flags & 1u << i;
         const char *const why = flag == LM_FLAG_DB       ? reasons->database
                                 : flag == LM_FLAG_UNABLE ? reasons->unable
+                                : flag == LM_FLAG_SENDER ? reasons->sender
                                                          : "";
         if (flag) {
             draw_warning(g, row++, flag_words[i]);

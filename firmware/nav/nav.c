@@ -9,6 +9,11 @@
 #include "lm/geo.h"
 #include "lm/units.h"
 
+enum {
+    POSITION_TOLERANCE = 238609, /* 0.02 degree */
+    ANGLE_TOLERANCE = 59652324   /* 5 degrees */
+};
+
 /* A field of one sender at a given time. */
 struct reading {
     enum lm_bus_field field;
@@ -403,6 +408,47 @@ static struct lm_nav_item *slot_for(struct lm_nav *n, const struct lm_bus_event 
     return worst_rank > rank ? worst : NULL;
 }
 
+/* By how much two good senders of a field may differ, in its unit; 0: they are not compared. In
+ * 0.3 s, the age of a good position, 300 m/s are 0.001 degree. UNSOURCED. */
+static const int32_t tolerance[LM_BUS_NAV_FIELDS] = {
+    [LM_BUS_LATITUDE] = POSITION_TOLERANCE,
+    [LM_BUS_LONGITUDE] = POSITION_TOLERANCE,
+    [LM_BUS_ELLIPSOID_HEIGHT] = 100 << 6,
+    [LM_BUS_GROUND_SPEED] = 20000,
+    [LM_BUS_PITCH] = ANGLE_TOLERANCE,
+    [LM_BUS_ROLL] = ANGLE_TOLERANCE,
+    [LM_BUS_HEADING] = ANGLE_TOLERANCE,
+    [LM_BUS_TRUE_HEADING] = ANGLE_TOLERANCE,
+    [LM_BUS_BARO_ALTITUDE] = 100 << 6,
+    [LM_BUS_TRUE_ALTITUDE] = 100 << 6,
+    [LM_BUS_ALTITUDE_RATE] = 20000,
+    [LM_BUS_EAST_VELOCITY] = 20000,
+    [LM_BUS_NORTH_VELOCITY] = 20000,
+    [LM_BUS_UP_VELOCITY] = 20000,
+    [LM_BUS_MAGNETIC_HEADING] = ANGLE_TOLERANCE,
+    [LM_BUS_UTC] = 5,
+};
+
+/* Compare a sender's new value with those of the others. Differences of angles wrap. */
+static void compare_senders(struct lm_nav *n, const struct lm_nav_item *item,
+                            const struct lm_bus_event *event)
+{
+    const enum lm_bus_field field = (enum lm_bus_field)event->field;
+    const uint32_t most = (uint32_t)tolerance[field] + event->step;
+    for (uint32_t i = 0; i < LM_NAV_SOURCES && tolerance[field] != 0; i++) {
+        const struct lm_nav_item *other = &n->item[field][i];
+        if (other == item || read_item(field, other, event->time_us).quality != LM_NAV_GOOD) {
+            continue;
+        }
+        const uint32_t apart =
+            fx_abs_u32((int32_t)((uint32_t)item->value - (uint32_t)other->value));
+        if (apart > most && apart - most > other->step) {
+            n->disagreements++;
+            n->disagreeing = event->field;
+        }
+    }
+}
+
 void lm_nav_take(struct lm_nav *n, const struct lm_bus_event *event)
 {
     if (event->field >= LM_BUS_NAV_FIELDS) {
@@ -419,6 +465,7 @@ void lm_nav_take(struct lm_nav *n, const struct lm_bus_event *event)
                          event->time_us - item->time_us <= lm_us_of_ms(item->stale_ms);
     if (goes_on && item->node != event->node) {
         n->rivals++;
+        n->rival_node = event->node;
         return;
     }
     int32_t value = event->value;
@@ -441,4 +488,5 @@ void lm_nav_take(struct lm_nav *n, const struct lm_bus_event *event)
         .node = event->node,
         .has_value = true,
     };
+    compare_senders(n, item, event);
 }

@@ -36,6 +36,35 @@ static uint32_t bad_frames(const struct lm_unit *u)
     return bad;
 }
 
+struct lm_sender_counts lm_sender_counts(const struct lm_unit *u)
+{
+    struct lm_sender_counts c = {.stuck = u->bus.canas.count.stuck,
+                                 .stuck_node = u->bus.canas.stuck_node,
+                                 .rivals = u->nav.rivals,
+                                 .disagreements = u->nav.disagreements,
+                                 .refused = u->bus.count.outcome[LM_BUS_NODE_REFUSED]};
+    for (uint32_t t = 0; t < LM_BUS_TABLES_MORE; t++) {
+        c.stuck += u->more[t].canas.count.stuck;
+        c.stuck_node = u->more[t].canas.stuck_node ? u->more[t].canas.stuck_node : c.stuck_node;
+        c.refused += u->more[t].count.outcome[LM_BUS_NODE_REFUSED];
+    }
+    c.sum = c.stuck + c.rivals + c.disagreements;
+    return c;
+}
+
+struct lm_text lm_sender_fault(const struct lm_unit *u)
+{
+    struct lm_text t = {0};
+    if (u->senders.kind == 3) {
+        lm_text_add(&t, "SENDERS DIFFER");
+    } else if (u->senders.kind != 0) {
+        lm_text_add(&t, u->senders.kind == 2 ? "RIVAL NODE " : "STUCK NODE ");
+        lm_text_number(
+            &t, u->senders.kind == 2 ? u->nav.rival_node : lm_sender_counts(u).stuck_node, 1);
+    }
+    return t;
+}
+
 /* The name of the radar table in use, after where it comes from. */
 static void add_radar(const struct lm_unit_map *map, struct lm_text *t)
 {
@@ -62,7 +91,7 @@ static void add_counters(const struct lm_unit *u, uint32_t row, struct lm_text *
         add_pair(t, "BUS", u->count.bus_frames, "BUS ERR", u->count.bus_errors);
         break;
     case 3:
-        add_pair(t, "BUS BAD", bad_frames(u), "TORN", u->bus.canas.count.torn_pairs);
+        add_pair(t, "BUS BAD", bad_frames(u), "SENDERS", lm_sender_counts(u).sum);
         break;
     case 4:
         add_pair(t, "JUMPS", u->nav.position_jumps, "REFUSED", u->count.commands_refused);

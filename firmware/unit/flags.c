@@ -1,10 +1,12 @@
 #include "flags.h"
 
+#include "lm/bit.h"
 #include "lm/units.h"
 #include "ownship.h"
 
 enum {
     TILE_FAULT_SHOWN_US = 3000000,
+    SENDER_SHOWN_US = 3000000,
     /* An aircraft on the ground, or a height that is a little wrong, is not below the terrain.
      * UNSOURCED. */
     BELOW_M_Q10 = 10 << 10
@@ -48,6 +50,25 @@ static uint32_t terrain_flags(const struct lm_unit *u)
     return height_m_q10 + BELOW_M_Q10 < u->ground_m_q10 ? LM_FLAG_BELOW : 0;
 }
 
+/* LM_FLAG_SENDER, for a while after one of the counts grew. */
+static uint32_t sender_flags(struct lm_unit *u, uint64_t now_us)
+{
+    const struct lm_sender_counts now = lm_sender_counts(u);
+    const uint8_t kind = now.disagreements != u->senders.disagreements ? 3
+                         : now.rivals != u->senders.rivals             ? 2
+                         : now.stuck != u->senders.stuck               ? 1
+                                                                       : 0;
+    if (kind != 0) {
+        u->senders.stuck = now.stuck;
+        u->senders.rivals = now.rivals;
+        u->senders.disagreements = now.disagreements;
+        u->senders.grew_us = now_us;
+        u->senders.kind = kind;
+    }
+    return u->senders.kind != 0 && now_us - u->senders.grew_us < SENDER_SHOWN_US ? LM_FLAG_SENDER
+                                                                                 : 0;
+}
+
 /* Of two interfaces, either. */
 static bool is_bus_silent(const struct lm_unit *u, uint64_t now_us)
 {
@@ -57,8 +78,8 @@ static bool is_bus_silent(const struct lm_unit *u, uint64_t now_us)
 
 uint32_t lm_update_flags(struct lm_unit *u, uint64_t now_us)
 {
-    const uint32_t flags = map_flags(u, now_us) | nav_flags(u) | terrain_flags(u) |
-                           (u->page.is_frozen ? LM_FLAG_FROZEN : 0u) |
+    const uint32_t flags = map_flags(u, now_us) | nav_flags(u) | sender_flags(u, now_us) |
+                           terrain_flags(u) | (u->page.is_frozen ? LM_FLAG_FROZEN : 0u) |
                            (u->page.is_override ? LM_FLAG_SILENT : 0u) |
                            (u->picture.coverage.is_off_map ? LM_FLAG_OFF_MAP : 0u) |
                            (u->weather.is_stale ? LM_FLAG_WEATHER : 0u) |

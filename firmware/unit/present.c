@@ -92,7 +92,9 @@ static void show_radar(const struct lm_unit *u, const struct lm_glass *glass)
     const struct lm_symbols symbols = describe(u);
     lm_overlay_symbols(glass, &symbols);
     const struct lm_text database = lm_unit_map_refusal(&u->map);
-    const struct lm_warning_reasons reasons = {database.words, lm_refusal_word(u->unable.reason)};
+    const struct lm_text sender = lm_sender_fault(u);
+    const struct lm_warning_reasons reasons = {database.words, lm_refusal_word(u->unable.reason),
+                                               sender.words};
     lm_overlay_warnings(glass, u->flags, &reasons);
 }
 

@@ -56,8 +56,10 @@ int lm_unit_init(struct lm_unit *u, const struct lm_board *board)
                                        : u->map.bus       ? u->map.bus
                                                           : &lm_bus_canas17;
     lm_bus_init(&u->bus, bus);
+    lm_bus_hear_only(&u->bus, board->bus_nodes);
     for (uint32_t t = 0; t < LM_BUS_TABLES_MORE && board->tables[t].profile; t++) {
         lm_bus_init(&u->more[t], board->tables[t].profile);
+        lm_bus_hear_only(&u->more[t], board->bus_nodes);
     }
     lm_nav_init(&u->nav);
     u->nav.is_heading_magnetic = board->is_heading_magnetic;
@@ -110,7 +112,9 @@ static void take_frame(struct lm_unit *u, uint8_t interface, const struct lm_can
         struct lm_bus_event events[LM_BUS_EVENTS];
         take_events(u, events, lm_bus_take(&u->bus, frame, events));
         lm_canas_service_take(&u->service, frame);
-        lm_canas_control_take(&u->control_bus, frame);
+        if (frame->length > 0 && lm_bus_is_heard(u->board->bus_nodes, frame->data[0])) {
+            lm_canas_control_take(&u->control_bus, frame);
+        }
     }
     take_by_more(u, interface, frame);
 }

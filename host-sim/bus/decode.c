@@ -22,6 +22,7 @@ static const char *const outcome_words[LM_BUS_OUTCOMES] = {
     [LM_BUS_OTHER_CHANNEL] = "redundancy channel not used",
     [LM_BUS_SERVICE] = "node service",
     [LM_BUS_UNUSED] = "not used",
+    [LM_BUS_NODE_REFUSED] = "node not on the list",
     [LM_BUS_BAD_LENGTH] = "refused: length",
     [LM_BUS_BAD_NODE] = "refused: node 0",
     [LM_BUS_BAD_TYPE] = "refused: data type",
@@ -41,6 +42,7 @@ static const char *const outcome_keys[LM_BUS_OUTCOMES] = {
     [LM_BUS_OTHER_CHANNEL] = "channel_not_used",
     [LM_BUS_SERVICE] = "node_service",
     [LM_BUS_UNUSED] = "not_used",
+    [LM_BUS_NODE_REFUSED] = "node_not_on_the_list",
     [LM_BUS_BAD_LENGTH] = "refused_length",
     [LM_BUS_BAD_NODE] = "refused_node",
     [LM_BUS_BAD_TYPE] = "refused_type",
@@ -264,8 +266,11 @@ static void print_summary(const struct decoder *d, const struct drv_can_log *log
         }
     }
     if (d->bus.profile->framing == LM_BUS_CANAEROSPACE) {
-        fprintf(d->out, "# halves without a mate: %u; message codes out of sequence: %u\n",
-                d->bus.canas.count.torn_pairs, d->bus.canas.count.sequence_breaks);
+        fprintf(d->out,
+                "# halves without a mate: %u; message codes out of sequence: %u, "
+                "standing still: %u\n",
+                d->bus.canas.count.torn_pairs, d->bus.canas.count.sequence_breaks,
+                d->bus.canas.count.stuck);
     }
     const struct lm_fast_packet *fast = &d->bus.fast;
     if (fast->count.whole + fast->count.torn + fast->count.stray != 0) {
@@ -283,6 +288,7 @@ static void report(const struct decoder *d, const struct drv_can_log *log)
     }
     hs_report_put("torn_pairs", d->bus.canas.count.torn_pairs);
     hs_report_put("sequence_breaks", d->bus.canas.count.sequence_breaks);
+    hs_report_put("stuck", d->bus.canas.count.stuck);
     hs_report_object("fast_packets");
     hs_report_put("whole", d->bus.fast.count.whole);
     hs_report_put("torn", d->bus.fast.count.torn);

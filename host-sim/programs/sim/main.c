@@ -11,6 +11,7 @@
 #include "hs/png.h"
 #include "hs/progress.h"
 #include "hs/report.h"
+#include "lm/bit.h"
 #include "lm/bus_filters.h"
 #include "lm/sensor.h"
 #include "radar/text.h"
@@ -286,6 +287,11 @@ static void report_bus(const struct sim *s)
     hs_report_put("refused_frames", c->count.refused);
     hs_report_put("torn", c->count.torn);
     hs_report_put("bad", c->count.bad);
+    const struct lm_sender_counts senders = lm_sender_counts(u);
+    hs_report_put("senders_stuck", senders.stuck);
+    hs_report_put("senders_rival", senders.rivals);
+    hs_report_put("senders_disagree", senders.disagreements);
+    hs_report_put("node_not_on_the_list", senders.refused);
     hs_report_close();
     const struct lm_weather_bus *w = &u->weather.bus;
     hs_report_object("weather");
@@ -372,6 +378,11 @@ static void print_summary(const struct sim *s)
         bus->count.outcome[LM_BUS_BAD_LENGTH], bus->count.outcome[LM_BUS_BAD_NODE],
         bus->count.outcome[LM_BUS_BAD_TYPE], bus->count.outcome[LM_BUS_NOT_A_NUMBER],
         bus->count.outcome[LM_BUS_OUT_OF_RANGE]);
+    const struct lm_sender_counts senders = lm_sender_counts(u);
+    if (senders.sum + senders.refused != 0) {
+        printf("     senders: %u frames stuck, %u of rivals, %u disagree, %u not on the list\n",
+               senders.stuck, senders.rivals, senders.disagreements, senders.refused);
+    }
     const struct lm_canas_report *r = &u->report;
     if (r->node != 0) {
         printf("     told: %u frames; %u sets cut short, %u frames lost\n", r->count.sent,
@@ -498,6 +509,7 @@ static int run(struct sim *s)
     }
     hands_init(&s->hands, &s->script.port);
     struct bench_bus bus = {.can = &s->can,
+                            .nodes = o->has_nodes ? o->nodes : NULL,
                             .node = o->node,
                             .is_heading_magnetic = o->heading == 1,
                             .tells_reports = o->tells_reports,

@@ -6,6 +6,7 @@
 
 #include <math.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 
 static const struct hs_usage usage = {
@@ -74,6 +75,21 @@ static const char *take_glass(void *context, const char *word)
     return hs_options_words("whole|heading|strobe|borders");
 }
 
+/* "1,2,17". */
+static const char *take_nodes(void *context, const char *text)
+{
+    struct options *o = context;
+    o->has_nodes = true;
+    for (char *end; *text != '\0'; text = *end == ',' ? end + 1 : end) {
+        const long node = strtol(text, &end, 10);
+        if (end == text || node < 1 || node > 255 || (*end != '\0' && *end != ',')) {
+            return "needs numbers of nodes, 1..255, between commas";
+        }
+        o->nodes[node / 8] |= (uint8_t)(1u << node % 8);
+    }
+    return NULL;
+}
+
 static const char *take_profile(void *context, const char *name)
 {
     const struct lm_bus_profile **profile = context;
@@ -89,7 +105,7 @@ struct raw {
 
 static bool read_table(struct options *o, struct raw *raw, int argc, char **argv, int *exit_code)
 {
-    struct hs_taker size = {take_size, o}, glass = {take_glass, &o->glass},
+    struct hs_taker nodes = {take_nodes, o}, size = {take_size, o}, glass = {take_glass, &o->glass},
                     profile = {take_profile, &o->profile},
                     profile_2 = {take_profile, &o->profile_2};
     const struct hs_option options[] = {
@@ -110,6 +126,8 @@ static bool read_table(struct options *o, struct raw *raw, int argc, char **argv
         {"profile2", HS_TAKER, &profile_2, 0, 0, "NAME",
          "what its frames mean: a profile (canas17, if there is no --table2)", false},
         {"table2", HS_INPUT, &o->table_2, 0, 0, "FILE", "or a text table, or both", false},
+        {"nodes", HS_TAKER, &nodes, 0, 0, "N,N..",
+         "hear only these nodes of the bus, and refuse the others", false},
         {"heading", HS_CHOICE, &o->heading, 0, 0, "true|magnetic",
          "what the bus's heading angle (321) is from; a magnetic one needs the variation (1121)",
          false},

@@ -2,6 +2,7 @@
 #ifndef SIM_OPTIONS_H
 #define SIM_OPTIONS_H
 
+#include "lm/bus_event.h"
 #include "lm/bus_profile.h"
 #include "lm/glass_options.h"
 
@@ -24,6 +25,8 @@ struct options {
     const char *bus_log_2;                /* the second interface; NULL: there is none */
     const struct lm_bus_profile *profile_2;
     const char *table_2;
+    bool has_nodes; /* nodes.. are those that are heard */
+    uint8_t nodes[LM_BUS_NODE_BYTES];
     uint8_t node; /* on the bus; 0: it only listens */
     struct lm_glass_options glass;
 };

@@ -19,6 +19,12 @@ struct lm_bus {
 /* Begin with nothing decoded. `profile` stays borrowed as long as *b is used. */
 void lm_bus_init(struct lm_bus *b, const struct lm_bus_profile *profile);
 
+/* Hear only the nodes of a list (lm_bus_is_heard), which stays borrowed; NULL: all. Frames of
+ * others are LM_BUS_NODE_REFUSED and leave no trace in the decoder. The node of a packed frame is
+ * its channel: in NMEA 2000 the address of its source. A packed profile without channels hears all.
+ */
+void lm_bus_hear_only(struct lm_bus *b, const uint8_t *nodes);
+
 /* Decode a frame into `events`. Returns how many were filled, 0..LM_BUS_EVENTS; most often 0 or 1.
  * Any contents of *frame are safe; a refused frame is counted by its outcome. Cost: 340
  * instructions for a value of CANaerospace (x86-64, gcc -O2, counted). */

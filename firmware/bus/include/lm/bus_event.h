@@ -3,9 +3,14 @@
 #ifndef LM_BUS_EVENT_H
 #define LM_BUS_EVENT_H
 
+#include <stdbool.h>
+#include <stddef.h>
 #include <stdint.h>
 
 #include "lm/bus_fields.h"
+
+/* Bytes of a list of nodes. */
+enum { LM_BUS_NODE_BYTES = 32 };
 
 struct lm_bus_event {
     int32_t value;    /* in the field's unit: lm_bus_fields[field].unit */
@@ -22,6 +27,12 @@ struct lm_bus_event {
     uint8_t service;    /* CANaerospace service code; of weather and live targets: their number */
     uint8_t code;       /* CANaerospace message code; of these: number of the set of values */
 };
+
+/* True if the list of nodes has this one: bit n % 8 of its byte n / 8. NULL has all. */
+static inline bool lm_bus_is_heard(const uint8_t nodes[LM_BUS_NODE_BYTES], uint8_t node)
+{
+    return nodes == NULL || (nodes[node / 8] >> node % 8 & 1) != 0;
+}
 
 /* Most events of one frame; a packed frame holds several values. */
 enum { LM_BUS_EVENTS = 8 };

@@ -123,6 +123,7 @@ enum lm_bus_outcome {
     LM_BUS_OTHER_CHANNEL, /* a redundancy channel of LM_BUS_CHANNELS or above */
     LM_BUS_SERVICE,       /* a node service of CANaerospace: lm/canas_service.h */
     LM_BUS_UNUSED,        /* an identifier without a row */
+    LM_BUS_NODE_REFUSED,  /* its sender is not on the list of nodes */
     LM_BUS_BAD_LENGTH,    /* too short, or not what the data type says */
     LM_BUS_BAD_NODE,      /* the sender is node 0, which addresses all nodes and is none */
     LM_BUS_BAD_TYPE,      /* a type that this identifier does not take */

@@ -64,6 +64,10 @@ enum {
     LM_CANAS_ROW_LAST = 1999
 };
 
+/* Frames with one message code after which a sender that has counted is stuck: its transmitter
+ * repeats an old frame, which looks like fresh data. */
+enum { LM_CANAS_STILL = 8 };
+
 /* Pair: a half of a DOUBLE that waits for the other, and the order in which its sender sends
  * them. */
 struct lm_canas_pair {
@@ -82,11 +86,17 @@ struct lm_canas {
     struct lm_canas_pair pair[2][LM_BUS_CHANNELS]; /* latitude, longitude */
     struct {
         uint8_t node, code; /* node 0: nothing heard yet */
+        uint8_t still;      /* frames since the code last changed, up to LM_CANAS_STILL */
+        bool has_counted;   /* the node has changed its code at least once */
     } last[LM_BUS_ROWS_MAX][LM_BUS_CHANNELS];
+    const uint8_t *nodes; /* borrowed; lm_bus_hear_only */
+    uint8_t stuck_node;   /* of the frame of count.stuck that came last */
     struct {
         uint32_t torn_pairs;      /* halves dropped without the other half */
         uint32_t sequence_breaks; /* message codes that are not one more than the last: a frame
                                      was lost or repeated, or the sender restarted */
+        uint32_t stuck; /* frames of a sender whose code stands still: the LM_CANAS_STILL-th
+                           of one code, and those behind it */
     } count;
 };
 

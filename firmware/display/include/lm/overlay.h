@@ -30,9 +30,10 @@ enum lm_flag {
     LM_FLAG_WEATHER = 1 << 9,   /* the bus's weather is stale and will be removed */
     LM_FLAG_BELOW = 1 << 10,    /* the aircraft is below the map's terrain */
     LM_FLAG_MAGNETIC = 1 << 11, /* the heading is from magnetic north, and there is no variation */
-    LM_FLAG_EXERCISE = 1 << 12  /* the exercise clock is silent and runs on by itself */
+    LM_FLAG_EXERCISE = 1 << 12, /* the exercise clock is silent and runs on by itself */
+    LM_FLAG_SENDER = 1 << 13    /* a sender of the bus is stuck, has a rival, or is contradicted */
 };
-enum { LM_FLAGS = 13 };
+enum { LM_FLAGS = 14 };
 
 /* The word of flag `number`, 0..LM_FLAGS - 1, which is the number of its bit: at most eight
  * characters, in static memory. */
@@ -106,7 +107,7 @@ void lm_overlay_labels(const struct lm_glass *g, const struct lm_page *page);
 
 /* Reasons that are written below the word of their flag; "" for none. Borrowed. */
 struct lm_warning_reasons {
-    const char *database, *unable; /* of LM_FLAG_DB and LM_FLAG_UNABLE */
+    const char *database, *unable, *sender; /* of LM_FLAG_DB, LM_FLAG_UNABLE, LM_FLAG_SENDER */
 };
 
 /* Write the words of `flags` (enum lm_flag) below each other, from the top of the frame. */

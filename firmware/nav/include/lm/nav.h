@@ -53,8 +53,11 @@ struct lm_nav {
      * believed at once, because an instructor may move the aircraft. The unit starts the picture
      * again when this number changes. */
     uint32_t position_jumps;
-    uint32_t crowded; /* values not kept: the field has LM_NAV_SOURCES better senders */
-    uint32_t rivals;  /* values of a second node while the first is good: see lm_nav_take */
+    uint32_t crowded;       /* values not kept: the field has LM_NAV_SOURCES better senders */
+    uint32_t rivals;        /* values of a second node while the first is good: see lm_nav_take */
+    uint32_t disagreements; /* values beyond the field's tolerance from another good sender's */
+    uint8_t rival_node;     /* of the rival that came last */
+    uint8_t disagreeing;    /* enum lm_bus_field of the disagreement that came last */
 };
 
 /* Origin of a number: its sender and its age. For a group of numbers, those of the older one. All
@@ -112,6 +115,10 @@ void lm_nav_init(struct lm_nav *n);
  *
  * An identifier has one node that sends it. If a second node sends it as well, the first is used
  * until it is stale, so that the picture does not jump between two aircraft.
+ *
+ * Good senders of one field (rows, channels) are compared as their values come. Positions may
+ * differ by 0.02 degree, angles by 5, heights by 100 m, speeds by 20 m/s, the time of day by 5 s;
+ * tracks, rates and steerpoints are not compared. More than that is counted, and both stay in use.
  *
  * A coordinate of a coarse data type, such as FLOAT, is smoothed: it says only that the aircraft is
  * within half a step of the value. The value kept is the sender's last position, extrapolated with

@@ -7,6 +7,23 @@
 
 enum { LM_BIT_ROWS = 22 };
 
+/* Senders of the bus that are not what they should be; each only grows. docs/bus.md, "Senders that
+ * are noticed". */
+struct lm_sender_counts {
+    uint32_t stuck;  /* struct lm_canas, of all tables */
+    uint32_t rivals; /* struct lm_nav, as disagreements */
+    uint32_t disagreements;
+    uint32_t sum;       /* of these three */
+    uint32_t refused;   /* frames of nodes that are not on the board's list */
+    uint8_t stuck_node; /* of a stuck sender; 0: there was none */
+};
+
+struct lm_sender_counts lm_sender_counts(const struct lm_unit *u);
+
+/* What is wrong with a sender, in words, for LM_FLAG_SENDER: "STUCK NODE 7", "RIVAL NODE 9",
+ * "SENDERS DIFFER"; empty if nothing ever was. */
+struct lm_text lm_sender_fault(const struct lm_unit *u);
+
 /* The text of a row, 0..LM_BIT_ROWS - 1; it may be empty:
  *
  *     0..2    version, title and size of the image

@@ -19,6 +19,7 @@ enum {
                      | LM_FLAG_WEATHER /* the sender of the weather is silent */
                      | LM_FLAG_BELOW   /* height or terrain is wrong */
                      | LM_FLAG_MAGNETIC /* the sender of the variation is silent */
+                     | LM_FLAG_SENDER   /* a sender is stuck, has a rival, or disagrees */
                      | LM_FLAG_EXERCISE /* the sender of the exercise clock is silent */
 };
 

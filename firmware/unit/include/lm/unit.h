@@ -67,6 +67,7 @@ struct lm_board {
     /* Tables that are heard besides: see struct lm_board_table. The first without a profile ends
      * them. */
     struct lm_board_table tables[LM_BUS_TABLES_MORE];
+    const uint8_t *bus_nodes;  /* the nodes that are heard: lm_bus_hear_only; NULL: all */
     uint8_t bus_node;          /* the unit's CANaerospace node, 1..255; 0: no node services */
     bool is_heading_magnetic;  /* the bus's LM_BUS_HEADING is from magnetic north */
     bool tells_reports;        /* it also tells lm/canas_report.h and lm/canas_control.h; without
@@ -121,6 +122,12 @@ struct lm_unit {
     struct lm_unit_weather weather;
     struct lm_exercise exercise;
     struct lm_live_bus live;
+
+    struct {
+        uint32_t stuck, rivals, disagreements; /* as of the last step: lm/bit.h */
+        uint64_t grew_us;                      /* when one of them last grew */
+        uint8_t kind;                          /* which did: 1, 2, 3 in this order */
+    } senders;
 
     struct lm_unit_map map;
     struct {

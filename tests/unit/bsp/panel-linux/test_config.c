@@ -85,6 +85,26 @@ TEST(every_profile_of_the_bus_is_a_choice)
     assert_null(c.can_profile);
 }
 
+TEST(a_list_of_nodes_is_numbers_between_commas)
+{
+    struct config c;
+    assert_int_equal(read_text(&c, "can.nodes = 1,17,255\n").count, 0);
+    assert_true(c.can_nodes.is_list);
+    for (int node = 0; node < 256; node++) {
+        const bool is_heard = lm_bus_is_heard(c.can_nodes.bits, (uint8_t)node);
+        assert_int_equal(is_heard, node == 1 || node == 17 || node == 255);
+    }
+    assert_int_equal(read_text(&c, "can.nodes = all\n").count, 0);
+    assert_false(c.can_nodes.is_list);
+    static const char *const wrong[] = {"0", "256", "1,", ",1", "1,,2", "1 2", "a", "-1"};
+    for (size_t i = 0; i < sizeof wrong / sizeof *wrong; i++) {
+        char text[60];
+        snprintf(text, sizeof text, "can.nodes = %s\n", wrong[i]);
+        assert_int_equal(read_text(&c, text).count, 1);
+        assert_false(c.can_nodes.is_list);
+    }
+}
+
 TEST(numbers_are_held_to_their_range)
 {
     static const struct {
