@@ -14,6 +14,7 @@ static const double straight_m = 0.3, least_m = 0.2;
 
 struct writing {
     const struct vector_map *map;
+    const struct db_class_table *table;
     FILE *out;
     OGRCoordinateTransformationH to_degrees;
     struct vector_detail_counts *counts;
@@ -123,11 +124,81 @@ static void write_segment(struct writing *w, const struct vector_item *item, str
     }
 }
 
+/* Class burnt at a spot; NODATA beyond the plane. */
+static uint8_t class_at(const struct vector_map *map, double x, double y)
+{
+    const double *t = map->grid.geotransform;
+    const struct spot p = {x, y};
+    if (!is_on_plane(map, p)) {
+        return DB_CLASS_NODATA;
+    }
+    const size_t column = (size_t)((x - t[0]) / t[1]), row = (size_t)((y - t[3]) / t[5]);
+    return map->classes[row * (size_t)map->grid.width + column];
+}
+
+static void write_strip(struct writing *w, const char *word, struct spot from, struct spot to,
+                        double width_m, int class_index)
+{
+    if (!is_on_plane(w->map, from) || !is_on_plane(w->map, to)) {
+        w->counts->outside++;
+        return;
+    }
+    const struct spot a = degrees_of(w, from), b = degrees_of(w, to);
+    fprintf(w->out, "%s %.7f %.7f %.7f %.7f %.1f %s\n", word, a.y, a.x, b.y, b.x,
+            fmax(0.1, fmin(1000, width_m)), w->table->items[class_index].name);
+    w->counts->strips++;
+}
+
+/* The verge on one side of a piece, where one class grows at six places of it: a burnt cell of the
+ * paving juts out by up to 0.7 of one, so they lie 0.9 and 1.5 cells from its edge. `u` and `v`
+ * lead one metre to that side. */
+static void write_verge(struct writing *w, double half_m, struct spot a, struct spot b, double u,
+                        double v)
+{
+    const double wide = 1.5 * w->map->cell_m, middle = half_m + wide / 2;
+    uint8_t grows = DB_CLASS_NODATA;
+    for (int i = 0; i < 6; i++) {
+        const double share = 0.1 + 0.4 * (i % 3), off = middle + (i < 3 ? 0.1 : 0.5) * wide;
+        const uint8_t k = class_at(w->map, a.x + share * (b.x - a.x) + off * u,
+                                   a.y + share * (b.y - a.y) + off * v);
+        grows = i == 0 || k == grows ? k : DB_CLASS_NODATA;
+        if (grows == DB_CLASS_NODATA || !w->table->items[grows].is_natural) {
+            return;
+        }
+    }
+    write_strip(w, "verge", (struct spot){a.x + middle * u, a.y + middle * v},
+                (struct spot){b.x + middle * u, b.y + middle * v}, wide, grows);
+}
+
+/* A segment of paving in pieces of some 30 m, each with the verges that it has. */
+static void write_surface(struct writing *w, const struct vector_item *item, struct spot from,
+                          struct spot to)
+{
+    const double length = hypot(to.x - from.x, to.y - from.y);
+    if (length < least_m || item->width_m < w->map->cell_m) {
+        return; /* narrower than a cell it would cover what the map does not know */
+    }
+    const double u = (to.y - from.y) / length, v = (from.x - to.x) / length;
+    const int pieces = (int)fmax(1, round(length / 30));
+    for (int i = 0; i < pieces; i++) {
+        const double s = (double)i / pieces, e = (i + 1.0) / pieces;
+        const struct spot a = {from.x + s * (to.x - from.x), from.y + s * (to.y - from.y)},
+                          b = {from.x + e * (to.x - from.x), from.y + e * (to.y - from.y)};
+        write_verge(w, item->width_m / 2, a, b, u, v);
+        write_verge(w, item->width_m / 2, a, b, -u, -v);
+    }
+    write_strip(w, "surface", from, to, item->width_m, item->rule->class_index);
+}
+
 /* A segment, or beside it both edges of what is as wide as the item. */
 static void write_edges(struct writing *w, const struct vector_item *item, struct spot a,
                         struct spot b)
 {
     const double length = hypot(b.x - a.x, b.y - a.y);
+    if (item->rule->detail == VECTOR_SURFACE) {
+        write_surface(w, item, a, b);
+        return;
+    }
     const bool is_edged = item->rule->detail == VECTOR_RAILING && item->width_m > 0 && length > 0;
     if (!is_edged) {
         write_segment(w, item, a, b);
@@ -183,6 +254,7 @@ static int write_item(struct writing *w, const struct vector_item *item)
     case VECTOR_RAIL:
     case VECTOR_RAILING:
     case VECTOR_WIRE:
+    case VECTOR_SURFACE:
         write_lines(w, item);
         return 0;
     case VECTOR_MAST:
@@ -206,11 +278,11 @@ static int write_items(struct writing *w)
     return result;
 }
 
-int vector_detail_write(const struct vector_map *map, const char *path, const char *remark,
-                        struct vector_detail_counts *counts)
+int vector_detail_write(const struct vector_map *map, const struct db_class_table *table,
+                        const char *path, const char *remark, struct vector_detail_counts *counts)
 {
     struct hs_atomic_file file;
-    struct writing w = {.map = map, .counts = counts};
+    struct writing w = {.map = map, .table = table, .counts = counts};
     *counts = (struct vector_detail_counts){0};
     OGRCoordinateTransformationH to_plane = vector_map_from(map, NULL, path);
     w.to_degrees = to_plane ? OCTGetInverse(to_plane) : NULL;

@@ -10,8 +10,9 @@
 #include <string.h>
 
 static const char *const shape_names[VECTOR_SHAPES] = {"point", "line", "area"};
-static const char *const detail_names[VECTOR_DETAILS] = {
-    "none", "building", "part", "wall", "fence", "rail", "railing", "wire", "mast", "coast"};
+static const char *const detail_names[VECTOR_DETAILS] = {"none",  "building", "part",    "wall",
+                                                         "fence", "rail",     "railing", "wire",
+                                                         "mast",  "surface",  "coast"};
 
 /* ---- tags ---- */
 
@@ -340,6 +341,9 @@ static const char *missing(const struct vector_rule *rule, uint32_t keys)
     }
     if (is_high && rule->height.count == 0) {
         return "`height`";
+    }
+    if (rule->detail == VECTOR_SURFACE && (rule->from != VECTOR_LINE || rule->class_index < 0)) {
+        return "`from = line`, `class` and `width`, which a surface needs";
     }
     const bool is_burnt_line =
         rule->from == VECTOR_LINE && rule->class_index >= 0 && rule->detail != VECTOR_COAST;

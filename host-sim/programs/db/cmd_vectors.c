@@ -217,6 +217,7 @@ static void report_detail(const struct vector_detail_counts *n)
     hs_report_put("walls", n->walls);
     hs_report_put("lines", n->lines);
     hs_report_put("masts", n->masts);
+    hs_report_put("strips", n->strips);
     hs_report_put("outside", n->outside);
     hs_report_close();
 }
@@ -231,12 +232,12 @@ static int write_detail(const struct job *j, const struct settings *s)
     }
     snprintf(remark, sizeof remark, "Made by landmass-db vectors%s",
              is_osm ? ". Data (c) OpenStreetMap contributors, ODbL 1.0" : "");
-    if (vector_detail_write(&j->map, s->detail, remark, &n) != 0) {
+    if (vector_detail_write(&j->map, &j->table, s->detail, remark, &n) != 0) {
         return -1;
     }
     printf("detail: %" PRIu64 " buildings in %" PRIu64 " boxes (%.0f m2 of %.0f m2), %" PRIu64
-           " walls, %" PRIu64 " lines, %" PRIu64 " masts",
-           n.buildings, n.boxes, n.boxes_m2, n.footprint_m2, n.walls, n.lines, n.masts);
+           " walls, %" PRIu64 " lines, %" PRIu64 " masts, %" PRIu64 " strips",
+           n.buildings, n.boxes, n.boxes_m2, n.footprint_m2, n.walls, n.lines, n.masts, n.strips);
     printf("; %" PRIu64 " pieces outside the area left out\n", n.outside);
     report_detail(&n);
     return 0;

@@ -16,15 +16,15 @@ int vector_ground(struct vector_map *map, const char *path, const struct db_code
 
 /* What was written as detail. */
 struct vector_detail_counts {
-    uint64_t buildings, boxes, walls, lines, masts;
+    uint64_t buildings, boxes, walls, lines, masts, strips;
     double footprint_m2, boxes_m2;
     uint64_t outside; /* pieces beyond the plane, left out */
 };
 
 /* Write the detail of all items as text (docs/database.md, "Detail"); `remark` stands in its first
  * line. The file appears whole or not at all. Returns 0, or -1 with the error reported. */
-int vector_detail_write(const struct vector_map *map, const char *path, const char *remark,
-                        struct vector_detail_counts *counts);
+int vector_detail_write(const struct vector_map *map, const struct db_class_table *table,
+                        const char *path, const char *remark, struct vector_detail_counts *counts);
 
 /* Write all items with their rule, class, height and origin, layers `areas`, `lines` and `points`.
  * The file appears whole or not at all. Returns 0, or -1 with the error reported. */

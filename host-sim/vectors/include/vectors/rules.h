@@ -9,7 +9,7 @@
  *     width       measure of a line's class, or of the edges that a railing runs along
  *     height      measure of structures and trees, walls and masts
  *     min_height  measure of where a building begins above the ground
- *     detail      building | part | wall | fence | rail | railing | wire | mast | coast
+ *     detail      building | part | wall | fence | rail | railing | wire | mast | surface | coast
  *     gabled      conditions of a gabled roof
  *     order       0..99: higher ones are burnt over lower ones
  *
@@ -45,7 +45,8 @@ enum vector_detail {
     VECTOR_RAILING,
     VECTOR_WIRE,
     VECTOR_MAST,
-    VECTOR_COAST, /* land on the left */
+    VECTOR_SURFACE, /* straight paving of the line's class and width, with its verges */
+    VECTOR_COAST,   /* land on the left */
     VECTOR_DETAILS
 };
 

@@ -553,6 +553,28 @@ TEST(lines_walls_masts_and_bridges_become_detail)
     assert_true(fabs(fabs(items[0].n[1] - items[1].n[1]) / metre_east - 9) < 0.1);
 }
 
+/* A runway of 300 m in a meadow: its strip, and ten pieces of verge on either side of it. */
+TEST(runways_become_strips_with_verges)
+{
+    struct item items[24];
+    begin_osm();
+    rectangle(1, 0, 0, 400, 150, TAG("landuse", "meadow"));
+    line(2, 50, 80, 350, 80, TAG("aeroway", "runway") TAG("width", "30"));
+    line(3, 50, 20, 350, 20, TAG("highway", "service"));
+    assert_int_equal(run_osm(""), 0);
+    assert_int_equal(read_detail("surface", items, 24), 1);
+    const double middle = (items[0].n[0] + items[0].n[2]) / 2;
+    assert_true(items[0].n[4] == 30);
+    assert_true(fabs(fabs(items[0].n[3] - items[0].n[1]) / metre_east - 300) < 0.5);
+    assert_int_equal(read_detail("verge", items, 24), 20);
+    for (int i = 0; i < 20; i++) {
+        const double off = fabs((items[i].n[0] + items[i].n[2]) / 2 - middle) / metre_north;
+        assert_true(fabs(off - (15 + items[i].n[4] / 2)) < 0.3);
+        assert_true(fabs(fabs(items[i].n[3] - items[i].n[1]) / metre_east - 30) < 0.1);
+    }
+    assert_true(scene_log_holds("21 strips"));
+}
+
 static double level_value(double x, double y)
 {
     (void)x, (void)y;
