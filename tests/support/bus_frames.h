@@ -4,7 +4,6 @@
 
 #include "lm/bus.h"
 
-#include <math.h>
 #include <stdint.h>
 #include <string.h>
 

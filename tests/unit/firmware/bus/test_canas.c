@@ -6,6 +6,7 @@
 #include "hs/rng.h"
 #include "support.h"
 
+#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <zlib.h>

@@ -6,6 +6,7 @@
 #include "lm/nav.h"
 #include "wgs84.h"
 
+#include <math.h>
 #include <stdio.h>
 
 static const double semi_major = 6378137.0, flattening = 1 / 298.257223563;

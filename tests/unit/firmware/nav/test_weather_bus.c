@@ -5,6 +5,7 @@
 #include "lm/status.h"
 #include "lm/weather_bus.h"
 
+#include <math.h>
 #include <stdlib.h>
 
 enum { S = 1000000 };

@@ -1,0 +1,33 @@
+/* The gamepad: left stick the cursor, right stick the flight, the first two buttons designate and
+ * drop. A browser shows a gamepad once one of its buttons was pressed. */
+
+const DEAD = 0.2; // of a stick's way
+const state = {x: 0, y: 0, buttons: []};
+
+const outside = (deflection) => (Math.abs(deflection ?? 0) < DEAD ? 0 : deflection);
+
+/* Look at the first gamepad, once a frame. */
+export function gamepadActs(page) {
+    const pad = navigator.getGamepads?.().find((p) => p);
+    if (!pad) {
+        return;
+    }
+    const x = Math.round(1000 * outside(pad.axes[0])), y = Math.round(-1000 * outside(pad.axes[1])) + 0;
+    if (x !== state.x || y !== state.y) {
+        page.unit.calls.slew(x, y);
+        Object.assign(state, {x, y});
+    }
+    const [turn, climb] = [outside(pad.axes[2]), outside(pad.axes[3])];
+    page.bus.bankDeg = turn || page.bus.isTurnedByPad ? 60 * turn : page.bus.bankDeg;
+    page.bus.climbMs = climb || page.bus.isClimbedByPad ? -40 * climb : page.bus.climbMs;
+    Object.assign(page.bus, {isTurnedByPad: turn !== 0, isClimbedByPad: climb !== 0});
+    const buttons = pad.buttons.map((b) => b.pressed);
+    const isNew = (n) => buttons[n] && !state.buttons[n];
+    if (isNew(0)) {
+        page.unit.calls.designate();
+    }
+    if (isNew(1)) {
+        page.unit.calls.drop();
+    }
+    state.buttons = buttons;
+}

@@ -1,0 +1,10 @@
+# Modules of WebAssembly: no main, no C library; what JavaScript calls is marked in the sources.
+MODULE   := $(O)/landmass.wasm
+PROGRAMS += $(MODULE)
+$(MODULE): $(call objs,bsp/web/board.c)
+
+$(O)/%.wasm: $(O)/bsp/web/memory.o $(LIB_firmware) $(LIB_fixed)
+	@mkdir -p $(@D)
+	$(call say,LINK,$@)
+	$(Q)$(LD_wasm) --no-entry --gc-sections --strip-all -z stack-size=65536 --stack-first $(LDFLAGS) \
+	    $(filter %.o,$^) --whole-archive $(LIB_firmware) $(LIB_fixed) -o $@
