@@ -29,7 +29,7 @@ $(call archive, $(LIB_support), $(wildcard tests/support/*.c))
 make_board = env -u MAKEFLAGS -u MAKEOVERRIDES $(MAKE) --no-print-directory -j2 BOARD=$(1)
 
 .PHONY: help deps all run check check-clang check-panel panel package bench gallery fuzz rooms lint format clean
-.PHONY: zcu102 run-zcu102 size bench-zcu102 coverage figures
+.PHONY: web zcu102 run-zcu102 size bench-zcu102 coverage figures
 
 help: ## Print this menu
 	@echo 'landmass: make TARGET'
@@ -81,6 +81,10 @@ gallery: deps ## Fly the real data of ../shared/data and leave the pictures in b
 
 fuzz: deps ## Fuzz every parser for FOR seconds each (FOR=60); `make check` replays seeds and random damage
 	@sh tests/fuzz/fuzz.sh $(or $(FOR),60)
+
+web: deps ## The display as a page: build/web/site, which any web server with byte ranges serves
+	@$(MAKE) --no-print-directory -j2 BOARD=web all
+	@sh bsp/web/site.sh $(O)
 
 zcu102: deps ## Build the bare-metal image for the board ZCU102: build/zcu102/landmass.elf
 	@$(MAKE) --no-print-directory BOARD=zcu102 all

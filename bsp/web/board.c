@@ -1,13 +1,17 @@
 /* The board of a browser. JavaScript brings the devices (bsp/web/page/unit.mjs): it hands over
  * frames and controls before each step, answers reads of the flash, and takes pictures.
  *
- * A module has one unit. All its memory is static, so that what it takes is known when it is linked. */
+ * A module has one unit. All its memory is static, so that what it takes is known when it is
+ * linked. */
 #include "drv/control_ring.h"
 #include "exports.h"
 #include "lm/overlay.h"
 #include "lm/unit.h"
 
 enum { SIDE_MIN_PX = 256, SIDE_MAX_PX = 1024, TILES = 384, FRAMES = 512, POLLS = 1 };
+
+/* As many as bench and ZCU102 have, so that the same frames are shown. */
+enum { BUFFERS = 2 };
 
 /* Frames on their way in. The page puts them in, a step takes them out. */
 struct frame_ring {
@@ -25,14 +29,13 @@ struct web {
     struct frame_ring frames;
     struct drv_control_ring acts;
     struct lm_damage stale; /* what the canvas has not been given yet */
-    uint8_t age;            /* of the one surface: 0 until a picture was shown */
     uint32_t pictures, frames_lost, acts_lost;
 };
 
 static struct web web;
 static struct lm_tile pool[TILES];
 static uint8_t plane[SIDE_MAX_PX * SIDE_MAX_PX];
-static uint32_t surface[SIDE_MAX_PX * SIDE_MAX_PX];
+static uint32_t surface[BUFFERS][SIDE_MAX_PX * SIDE_MAX_PX];
 static uint8_t canvas[SIDE_MAX_PX * SIDE_MAX_PX * 4]; /* red, green, blue, opaque */
 
 /* ---- devices ---- */
@@ -70,11 +73,11 @@ static int next_control(void *ctx, struct lm_control *control)
 static int acquire(void *ctx, struct lm_surface *s)
 {
     const struct web *w = ctx;
-    *s = (struct lm_surface){.pixels = surface,
+    *s = (struct lm_surface){.pixels = surface[(w->pictures + 1) % BUFFERS],
                              .stride_px = w->display.width_px,
                              .width_px = w->display.width_px,
                              .height_px = w->display.height_px,
-                             .age = w->age};
+                             .age = w->pictures >= BUFFERS ? BUFFERS : 0};
     return LM_OK;
 }
 
@@ -82,7 +85,6 @@ static int present(void *ctx, const struct lm_damage *changed)
 {
     struct web *w = ctx;
     lm_damage_add(&w->stale, changed);
-    w->age = 1;
     w->pictures++;
     return LM_OK;
 }
@@ -101,14 +103,16 @@ WEB_EXPORT("open") int web_open(double flash_bytes, uint32_t width_px, uint32_t 
     web.controls = (struct lm_controls){&web, next_control, NULL};
     web.display =
         (struct lm_display){&web, (uint16_t)width_px, (uint16_t)height_px, acquire, present};
-    web.board = (struct lm_board){.flash = &web.flash,
-                                  .can = &web.can,
-                                  .controls = &web.controls,
-                                  .display = &web.display,
-                                  .tile_pool = pool,
-                                  .tile_pool_bytes = sizeof pool,
-                                  .plane = plane,
-                                  .flash_poll_limit = POLLS};
+    web.board =
+        (struct lm_board){.flash = &web.flash,
+                          .can = &web.can,
+                          .controls = &web.controls,
+                          .display = &web.display,
+                          .tile_pool = pool,
+                          .tile_pool_bytes = sizeof pool,
+                          .plane = plane,
+                          .glass_step_px = LM_GLASS_STEP_PX, /* as bench and panel have it */
+                          .flash_poll_limit = POLLS};
     return lm_unit_init(&web.unit, &web.board);
 }
 
@@ -189,11 +193,12 @@ WEB_EXPORT("paint") uint8_t *web_paint(void)
 {
     const struct lm_rectangle glass = {0, 0, web.display.width_px, web.display.height_px};
     struct lm_damage_walk walk = lm_damage_walk(&glass);
+    const uint32_t *shown = surface[web.pictures % BUFFERS];
     struct lm_rectangle r;
     while (lm_damage_next(&web.stale, &walk, &r)) {
         for (int32_t y = r.top; y < r.bottom; y++) {
             const size_t at = (size_t)y * (size_t)glass.right + (size_t)r.left;
-            paint_row(canvas + 4 * at, surface + at, r.right - r.left);
+            paint_row(canvas + 4 * at, shown + at, r.right - r.left);
         }
     }
     lm_damage_clear(&web.stale);
@@ -228,6 +233,8 @@ WEB_EXPORT("value") double web_value(enum web_value which)
         return u->count.lines_dropped;
     case WEB_IS_FORMAT_RADAR:
         return u->page.format == LM_FORMAT_RADAR;
+    case WEB_IS_MAP_USABLE:
+        return u->map.is_usable;
     }
     return -1;
 }

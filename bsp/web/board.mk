@@ -13,4 +13,4 @@ KERNELS  := c
 # The page brings the devices.
 DRIVERS := not_fitted/not_fitted
 
-PARTS := bsp/web/web.mk tests/web/modules.mk
+PARTS := bsp/web/web.mk tests/web/web.mk

@@ -20,7 +20,7 @@ WEB_IMPORT("poll") int web_flash_poll(void);
 
 /* Start the unit, anew if there was one, with a flash of so many bytes and a glass of 256..1024
  * pixels a side. Reads what the unit needs at once; each read has one poll. Returns an answer of
- * lm_unit_init: LM_OK also if the image could not be read, with its flag in WEB_FLAGS. */
+ * lm_unit_init: LM_OK also if the image could not be read; WEB_IS_MAP_USABLE then is 0. */
 int web_open(double flash_bytes, uint32_t width_px, uint32_t height_px);
 
 /* One step of the unit, at a time in microseconds that never goes back. */
@@ -60,7 +60,8 @@ enum web_value {
     WEB_FRAMES_LOST,
     WEB_ACTS_LOST,
     WEB_LINES_DROPPED,
-    WEB_IS_FORMAT_RADAR /* the radar page is shown, and no other */
+    WEB_IS_FORMAT_RADAR, /* the radar page is shown, and no other */
+    WEB_IS_MAP_USABLE    /* the image was read, and can be used */
 };
 
 /* A value, or -1 if there is none of that number. */

@@ -54,10 +54,9 @@ uint32_t golden_web_place(uint32_t number)
 
 int golden_web_fly(uint32_t number, uint32_t image_bytes, uint32_t latitude, uint32_t longitude)
 {
-    const struct golden_country country = {
-        .centre = {.latitude = latitude, .longitude = longitude},
-        .image = image,
-        .image_bytes = image_bytes};
+    const struct golden_country country = {.centre = {.latitude = latitude, .longitude = longitude},
+                                           .image = image,
+                                           .image_bytes = image_bytes};
     return golden_fly(&rig, &golden_pictures[number], &country);
 }
 

@@ -2,7 +2,7 @@
 
 const PLACE_BYTES = 40, HEAD_BYTES = 8; // struct golden_flash (tests/zcu102/golden_flash.h)
 
-function placesOf(flash) {
+export function placesOf(flash) {
     const view = new DataView(flash);
     return [0, 1, 2, 3].map((n) => {
         const at = HEAD_BYTES + n * PLACE_BYTES, name = new Uint8Array(flash, at, 16);

@@ -9,11 +9,10 @@
 import {Flash} from './flash.mjs';
 
 const OPEN_TRIES = 400;
-const FLAG_DB = 1 << 2;
 
 /* enum web_value, in its order. */
 const VALUES = ['pictures', 'flags', 'mode', 'fov', 'rangeNm', 'cursorLatitude', 'cursorLongitude',
-    'isCursorPlaced', 'framesLost', 'actsLost', 'linesDropped', 'isRadarPage'];
+    'isCursorPlaced', 'framesLost', 'actsLost', 'linesDropped', 'isRadarPage', 'isMapUsable'];
 const MODES = ['GM', 'GMT', 'SEA', 'SAR'], FOVS = ['NORM', 'EXP', 'DBS1', 'DBS2'];
 const DEGREES_OF_BAM = 360 / 2 ** 32;
 
@@ -51,7 +50,7 @@ export class Unit {
         if (this.flash.failed.size > 0) {
             throw new Error(`${this.flash.source.name}: the image cannot be read`);
         }
-        if (this.value('flags') & FLAG_DB) {
+        if (!this.value('isMapUsable')) {
             throw new Error(`${this.flash.source.name}: no image that this display can use`);
         }
     }

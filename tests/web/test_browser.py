@@ -1,0 +1,243 @@
+"""The page in Chromium: golden pictures, every control, and nothing from elsewhere. TAP."""
+import os
+import pathlib
+import shutil
+import subprocess
+import sys
+import time
+
+try:
+    from selenium import webdriver
+    from selenium.webdriver.common.action_chains import ActionChains
+    from selenium.webdriver.common.by import By
+    from selenium.webdriver.common.keys import Keys
+except ImportError:
+    webdriver = None
+
+ROOT = pathlib.Path(__file__).resolve().parents[2]
+BUILD = pathlib.Path(os.environ.get("BUILD", "build/bench-linux"))
+SITE = BUILD / "tmp/web/site"
+WAIT_S = 60
+
+
+def make_site():
+    """The page as `make web` has it, with a golden country in place of the built-in scene."""
+    shutil.rmtree(SITE, ignore_errors=True)
+    shutil.copytree(ROOT / "bsp/web/page", SITE)
+    for name in ("goldens.html", "goldens_page.mjs", "goldens.mjs"):
+        shutil.copy(ROOT / "tests/web" / name, SITE)
+    for name in ("landmass.wasm", "golden.wasm"):
+        shutil.copy(ROOT / "build/web" / name, SITE)
+    flash = SITE / "golden.flash"
+    subprocess.run([BUILD / "bin/tests/zcu102/golden_flash", flash], check=True)
+    data = flash.read_bytes()
+    offset, size = (int.from_bytes(data[at:at + 8], "little") for at in (32, 40))
+    (SITE / "scene.lmdb").write_bytes(data[offset:offset + size])
+    (SITE.parent / "bad.log").write_text("no frame\n")
+    subprocess.run([BUILD / "bin/landmass-nav", "--straight", "45.95,11,0,3000,180", "--seconds", "20", "--out",
+                    SITE.parent / "bus.log"], check=True, stdout=subprocess.DEVNULL)
+
+
+def node(*words):
+    """A program of node that prints where it listens, first of all."""
+    child = subprocess.Popen(["node", *map(str, words)], stdout=subprocess.PIPE, text=True)
+    return child, child.stdout.readline().split()[0]
+
+
+class Browser:
+    def __init__(self, url):
+        options = webdriver.ChromeOptions()
+        for word in ("--headless=new", "--no-sandbox", "--disable-gpu", "--disable-dev-shm-usage",
+                     "--window-size=1280,860"):
+            options.add_argument(word)
+        options.set_capability("goog:loggingPrefs", {"browser": "ALL"})
+        self.driver = webdriver.Chrome(options=options)
+        self.url = url
+
+    def get(self, page=""):
+        self.driver.get(self.url + page)
+
+    def find(self, name):
+        return self.driver.find_element(By.ID, name)
+
+    def ask(self, expression):
+        return self.driver.execute_script(f"return {expression}")
+
+    def until(self, expression):
+        """Wait until an expression is true; what it is at the end."""
+        end = time.monotonic() + WAIT_S
+        while not self.ask(f"!!({expression})"):
+            if time.monotonic() > end:
+                raise AssertionError(f"{expression} is not true after {WAIT_S} s")
+            time.sleep(0.05)
+        return True
+
+    def press(self, *keys):
+        chain = ActionChains(self.driver)
+        for key in keys:
+            chain = chain.key_down(key)
+        for key in reversed(keys):
+            chain = chain.key_up(key)
+        chain.perform()
+
+    def start(self):
+        """The page, over the middle of the golden country."""
+        self.get()
+        self.until("globalThis.landmass?.unit && landmass.tour")
+        self.ask("Object.assign(landmass.bus, {latitude: 45.95, longitude: 11}) && 0")
+        self.until("landmass.unit.value('pictures') > 30")
+
+
+def value(browser, name):
+    return browser.ask(f"landmass.unit.value('{name}')")
+
+
+def golden_pictures_are_those_of_the_pc(b):
+    b.get("goldens.html")
+    b.until("document.getElementById('lines').textContent !== ''")
+    drawn = b.ask("document.getElementById('lines').textContent")
+    assert drawn == (ROOT / "tests/golden/pictures.golden").read_text(), drawn[:300]
+
+
+def the_page_flies_and_asks_no_other_server(b):
+    b.start()
+    assert b.find("message").text == "", b.find("message").text
+    b.until("document.getElementById('figures').textContent !== ''")
+    print("#", b.find("figures").text)
+    lit = b.ask("landmass.context.getImageData(0, 0, 768, 768).data.filter((x, i) => i % 4 == 1 && x > 40).length")
+    assert lit > 5000, f"{lit} lit pixels"
+    names = b.ask("performance.getEntriesByType('resource').map((entry) => entry.name)")
+    assert names and all(name.startswith((b.url, "data:")) for name in names), names
+    errors = [entry for entry in b.driver.get_log("browser") if entry["level"] == "SEVERE"]
+    assert not errors, errors
+
+
+def every_key_of_the_bezel_acts_by_mouse(b):
+    b.start()
+    b.driver.execute_script("landmass.told = []; const {calls} = landmass.unit; "
+                            "landmass.unit.calls = {...calls, button: (...a) => { landmass.told.push(a); calls.button(...a); }}")
+    for number in range(1, 29):
+        b.driver.find_element(By.CSS_SELECTOR, f"[data-button='{number}']").click()
+    told = b.ask("landmass.told")
+    assert told == [[is_down, n] for n in range(1, 29) for is_down in (True, False)], told
+
+
+def pages_open_by_key_and_by_button(b):
+    b.start()
+    b.press(Keys.SHIFT, "2")  # key 12: BIT
+    b.until("landmass.unit.value('isRadarPage') === 0")
+    b.driver.find_element(By.CSS_SELECTOR, "[data-button='13']").send_keys(Keys.ENTER)
+    b.until("landmass.unit.value('isRadarPage') === 1")
+
+
+def the_cursor_moves_and_designate_draws_a_patch(b):
+    b.start()
+    before = value(b, "cursorLongitude")
+    chain = ActionChains(b.driver).key_down(Keys.ARROW_UP).pause(0.4).key_up(Keys.ARROW_UP)
+    chain.perform()
+    b.until(f"landmass.unit.value('cursorLongitude') > {before}")
+    assert b.ask("landmass.deflection") == [0, 0]
+    b.ask("landmass.patch(46, 11, 5) && 0")
+    b.until("landmass.unit.value('mode') === 3")
+    b.find("drop").click()
+    b.until("landmass.unit.value('mode') !== 3")
+    b.find("designate").click()
+    time.sleep(0.3)
+    b.find("description")
+
+
+def the_keyboard_alone_reaches_everything(b):
+    b.start()
+    wanted = b.ask("document.querySelectorAll('button:not(:disabled), input, canvas').length")
+    reached = set()
+    for _ in range(wanted + 8):
+        b.press(Keys.TAB)
+        reached.add(b.ask("[...document.querySelectorAll('button, input, canvas')].indexOf(document.activeElement)"))
+    assert len(reached - {-1}) >= wanted, f"{len(reached - {-1})} of {wanted}"
+
+
+def the_flight_turns_and_pauses_by_key(b):
+    b.start()
+    b.press("l")
+    assert b.ask("landmass.bus.bankDeg") == 5
+    b.until("landmass.bus.headingDeg !== 90")
+    b.press("p")
+    now = b.ask("landmass.nowUs")
+    time.sleep(0.3)
+    assert b.ask("landmass.nowUs") - now < 50000
+    b.press("p")
+    b.until(f"landmass.nowUs > {now} + 200000")
+
+
+def a_log_flies_and_a_bad_one_is_refused(b):
+    b.start()
+    b.find("log").send_keys(str((SITE.parent / "bad.log").resolve()))
+    b.until("document.getElementById('message').textContent.includes('bad.log: the log has no frame')")
+    assert b.ask("landmass.bus.constructor.name") == "Flight"
+    b.find("log").send_keys(str((SITE.parent / "bus.log").resolve()))
+    b.until("landmass.bus.constructor.name === 'LogBus' && landmass.bus.next > 1000")
+    b.find("image").send_keys(str((SITE.parent / "bad.log").resolve()))
+    b.until("document.getElementById('message').textContent.includes('no image that this display can use')")
+    b.find("image").send_keys(str((SITE / "scene.lmdb").resolve()))
+    b.until("landmass.unit.flash.source.name === 'scene.lmdb' && landmass.unit.value('pictures') > 10")
+
+
+def a_live_bus_flies(b):
+    child, port = node(ROOT / "tests/web/socket.mjs", SITE.parent / "bus.log")
+    try:
+        b.start()
+        b.find("socket").send_keys(f"ws://127.0.0.1:{port}")
+        b.find("connect").click()
+        b.until("document.getElementById('message').textContent.includes('connected')")
+        time.sleep(1.5)
+        assert b.ask("landmass.unit.warnings()") == [], b.ask("landmass.unit.warnings()")
+        assert b.ask("landmass.bus.refused") == 0
+    finally:
+        child.kill()
+    b.until("document.getElementById('message').textContent.includes('closed')")
+    b.until("landmass.unit.warnings().length > 0")
+
+
+def a_missing_image_is_said(b):
+    (SITE / "scene.lmdb").rename(SITE / "away")
+    try:
+        b.get()
+        b.until("document.getElementById('message').textContent !== ''")
+        assert "scene.lmdb: the server answers 404" in b.find("message").text, b.find("message").text
+    finally:
+        (SITE / "away").rename(SITE / "scene.lmdb")
+
+
+TESTS = [golden_pictures_are_those_of_the_pc, the_page_flies_and_asks_no_other_server,
+         every_key_of_the_bezel_acts_by_mouse, pages_open_by_key_and_by_button,
+         the_cursor_moves_and_designate_draws_a_patch, the_keyboard_alone_reaches_everything,
+         the_flight_turns_and_pauses_by_key, a_log_flies_and_a_bad_one_is_refused, a_live_bus_flies,
+         a_missing_image_is_said]
+
+
+def main():
+    lacks = "python3-selenium" if webdriver is None else next(
+        (name for name in ("chromium", "chromedriver", "node") if shutil.which(name) is None), None)
+    if lacks:
+        print(f"ok 1 # SKIP the page in a browser\n# skipped: {lacks} is missing: run make deps\n1..1")
+        return 0
+    make_site()
+    server, url = node(ROOT / "bsp/web/serve.mjs", SITE, 0)
+    browser, failed = Browser(url), 0
+    try:
+        for number, test in enumerate(TESTS, 1):
+            try:
+                test(browser)
+                print(f"ok {number} - {test.__name__}", flush=True)
+            except Exception as error:  # pylint: disable=broad-except
+                failed += 1
+                print(f"not ok {number} - {test.__name__}\n# {type(error).__name__}: {error}", flush=True)
+    finally:
+        browser.driver.quit()
+        server.kill()
+    print(f"1..{len(TESTS)}")
+    return failed > 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
