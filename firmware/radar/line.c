@@ -27,7 +27,12 @@ bool lm_line_add_targets(struct lm_line *line, const struct lm_range_grid *grid,
     for (uint32_t i = 0; i < grid->cells; i++) {
         line->steady.level_db_q8[i] = LM_LEVEL_SHADOW;
     }
-    if (lm_target_line_add(targets->candidates, &where, &horizon, line->steady.level_db_q8) == 0) {
+    int32_t *level_db_q8 = line->steady.level_db_q8;
+    uint32_t cells = lm_target_line_add(targets->candidates, &where, &horizon, level_db_q8);
+    if (targets->live->count != 0) {
+        cells += lm_target_line_add(targets->live, &where, &horizon, level_db_q8);
+    }
+    if (cells == 0) {
         return false;
     }
     memcpy(line->steady.horizon, line->lit.horizon, sizeof line->steady.horizon);

@@ -393,38 +393,48 @@ void lm_sar_prefetch(const struct lm_sar *s, struct lm_tile_cache *tiles, uint32
     }
 }
 
-/* Greatest displacement by Doppler, s v / (V sin o) for the fastest target at the patch's far end.
- * Targets outside of the patch may appear in it. */
-static uint32_t displaced_most_m(const struct lm_sar *s, uint32_t half_diagonal_m)
+/* Displacement by Doppler is s v / (V sin o): metres for each mm/s at the patch's far end, Q16.
+ * Ranges are below 2^18 m. */
+static uint32_t displaced_q16(const struct lm_sar *s, uint32_t half_diagonal_m)
 {
     const uint64_t far_m = (uint64_t)s->command.range_m + half_diagonal_m;
+    const uint64_t most = 1 << 30;
+    const uint64_t each = (far_m << 16) / fx_max_u32(fx_abs_u32(s->across_mm_s), 1);
+    return (uint32_t)(each < most ? each : most);
+}
+
+/* Greatest displacement of a candidate, at most 200 km. Targets outside of the patch may appear in
+ * it. Speeds are below 2^20.1. */
+static uint32_t displaced_most_m(const struct lm_target_candidates *candidates, uint32_t each_q16)
+{
     uint32_t fastest_mm_s = 0;
-    for (uint32_t i = 0; i < s->targets->count; i++) {
-        fastest_mm_s = fx_max_u32(fastest_mm_s, s->targets->items[i].speed_mm_s);
+    for (uint32_t i = 0; i < candidates->count; i++) {
+        fastest_mm_s = fx_max_u32(fastest_mm_s, candidates->candidate[i].state.speed_mm_s);
     }
-    const uint64_t across_mm_s = fx_max_u32(fx_abs_u32(s->across_mm_s), 1);
-    const uint64_t most_m = far_m * fastest_mm_s / across_mm_s;
+    const uint64_t most_m = (uint64_t)fastest_mm_s * each_q16 >> 16;
     return most_m < 200000 ? (uint32_t)most_m : 200000;
 }
 
 void lm_sar_prefetch_targets(struct lm_sar *s, struct lm_tile_cache *tiles)
 {
     s->candidates.count = 0;
-    if (!s->targets || s->targets->count == 0) {
+    if (!s->targets || !lm_target_set_has_any(s->targets)) {
         return;
     }
     /* Half the diagonal; 1.5 is more than the root of 2. */
     const uint32_t half_diagonal_m = s->radar->sar.cells * s->grid.cell_m_q8 / 512 * 3 / 2 + 1;
     const struct lm_target_query query = {.position = s->command.centre,
-                                          .reach_m = half_diagonal_m +
-                                                     displaced_most_m(s, half_diagonal_m),
+                                          .reach_m = half_diagonal_m,
+                                          .displaced_q16 = displaced_q16(s, half_diagonal_m),
                                           .time_us = s->time_us,
                                           .tiles = tiles,
                                           .lod = s->lod};
     lm_target_candidates_select(&s->candidates, s->targets, &query);
+    lm_target_candidates_add_live(&s->candidates, &query);
     if (s->chips) {
+        const uint32_t displaced_m = displaced_most_m(&s->candidates, query.displaced_q16);
         const struct lm_chip_query chip_query = {.centre = s->command.centre,
-                                                 .reach_m = query.reach_m,
+                                                 .reach_m = query.reach_m + displaced_m,
                                                  .radar = antenna_of(&s->command),
                                                  .heights = s->geometry.heights,
                                                  .cell_mm = s->command.cell_mm,

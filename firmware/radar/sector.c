@@ -390,8 +390,23 @@ static lm_horizon_q40_t horizon_at(struct lm_sector *s, struct lm_tile_cache *ti
     return s->foreground_horizon;
 }
 
+/* Select the live targets that a sample may meet. */
+static void find_live(struct lm_sector *s, const struct lm_target_query *query, fx_bam_t azimuth)
+{
+    const struct lm_live_line line = {.azimuth = azimuth,
+                                      .width = lm_beam_spacing(&s->beam, s->radar),
+                                      .begin_m_q8 = s->ground_edge_m_q8,
+                                      .end_m_q8 =
+                                          s->ground_edge_m_q8 + s->grid.cells * s->grid.cell_m_q8,
+                                      .is_doppler = s->beam.fineness != 0,
+                                      .speed_mm_s = s->platform.speed_mm_s,
+                                      .track = s->platform.track,
+                                      .beam = s->radar->antenna.azimuth_beam};
+    lm_target_candidates_of_line(&s->live, s->targets, query, &line);
+}
+
 /* Select the targets in range, and for a window their chips. */
-static void find_targets(struct lm_sector *s, struct lm_tile_cache *tiles)
+static void find_targets(struct lm_sector *s, struct lm_tile_cache *tiles, fx_bam_t azimuth)
 {
     const struct lm_target_query query = {.position = s->platform.position,
                                           .reach_m =
@@ -399,6 +414,10 @@ static void find_targets(struct lm_sector *s, struct lm_tile_cache *tiles)
                                           .time_us = s->platform.time_us,
                                           .tiles = tiles,
                                           .lod = s->lod};
+    s->live.count = 0;
+    if (s->targets->live && s->targets->live->count != 0) {
+        find_live(s, &query, azimuth);
+    }
     if (!lm_target_candidates_refresh(&s->candidates, s->targets, &query) ||
         !lm_sector_is_window(s) || !s->chips) {
         return;
@@ -419,9 +438,10 @@ static bool add_targets(struct lm_sector *s, struct lm_tile_cache *tiles, fx_bam
                         struct lm_line *line)
 {
     const struct lm_sector_mode_row *mode = mode_of(s);
-    find_targets(s, tiles);
+    find_targets(s, tiles, azimuth);
     const struct lm_line_targets targets = {
         .candidates = &s->candidates,
+        .live = &s->live,
         .where = {.position = s->platform.position,
                   .azimuth = azimuth,
                   .width = lm_beam_spacing(&s->beam, s->radar),
@@ -514,7 +534,7 @@ static void take_sample(struct lm_sector *s, struct lm_tile_cache *tiles, int32_
     follow(s);
     trace_average(s, tiles, azimuth, line);
     const bool has_steady =
-        s->targets && s->targets->count != 0 && add_targets(s, tiles, azimuth, line);
+        s->targets && lm_target_set_has_any(s->targets) && add_targets(s, tiles, azimuth, line);
     lm_antenna_pattern_apply(&s->pattern, &s->fan, &s->grid, &line->lit);
     lm_slant_run(&s->slant, &s->grid, line->lit.level_db_q8, lm_beam_slot(&s->beam, sample));
     if (has_steady) {

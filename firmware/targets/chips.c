@@ -102,8 +102,7 @@ static const struct lm_chip_slot *want(struct lm_chips *c, const struct lm_signa
 static bool key_of(const struct lm_target_set *set, struct lm_target_candidate *candidate,
                    const struct lm_chip_query *query, struct lm_chip_key *key)
 {
-    const struct lm_target *t = &set->items[candidate->index];
-    const struct lm_signature *s = lm_target_signature(set, t);
+    const struct lm_signature *s = lm_target_signature(set, &candidate->body);
     candidate->chip = NULL;
     if (!s || !is_large_and_near(s, candidate, query)) {
         return false;
@@ -112,7 +111,7 @@ static bool key_of(const struct lm_target_set *set, struct lm_target_candidate *
     view_of(&v, candidate, query);
     const struct lm_chip_choice choice = lm_signature_choose(s, v.bearing, v.elevation);
     candidate->chip_turn = choice.turn;
-    *key = (struct lm_chip_key){.signature = t->signature,
+    *key = (struct lm_chip_key){.signature = candidate->body.signature,
                                 .aspect = (uint8_t)choice.aspect,
                                 .depression = (uint8_t)choice.depression,
                                 .shift = (uint8_t)shift_for(s, query)};

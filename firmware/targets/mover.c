@@ -54,19 +54,19 @@ struct lm_mover_state lm_mover_state_at(const struct lm_target *t, uint64_t time
 {
     struct lm_path_leg straight = {t->latitude, t->longitude, t->heading, lm_mm_of_m(t->leg_m)};
     if (t->speed_mm_s == 0) {
-        return (struct lm_mover_state){{t->latitude, t->longitude}, t->heading};
+        return (struct lm_mover_state){{t->latitude, t->longitude}, t->heading, t->heading, 0};
     }
     const bool has_path = (t->flags & LM_TARGET_HAS_PATH) != 0;
     bool is_back;
     uint32_t mm = travelled_mm(t, time_us, has_path ? path_mm(t) : straight.length_mm, &is_back);
     const struct lm_path_leg *leg = has_path ? find_leg(t, &mm) : &straight;
-    return (struct lm_mover_state){position_on_leg(leg, mm),
-                                   leg->heading + (is_back ? FX_BAM_180 : 0)};
+    const fx_bam_t heading = leg->heading + (is_back ? FX_BAM_180 : 0);
+    return (struct lm_mover_state){position_on_leg(leg, mm), heading, heading, t->speed_mm_s};
 }
 
-int32_t lm_mover_closing_mm_s(uint32_t speed_mm_s, fx_bam_t heading, fx_bam_t back)
+int32_t lm_mover_closing_mm_s(uint32_t speed_mm_s, fx_bam_t course, fx_bam_t back)
 {
-    return (int32_t)((int64_t)speed_mm_s * fx_cos_q30(heading - back) >> 30);
+    return (int32_t)((int64_t)speed_mm_s * fx_cos_q30(course - back) >> 30);
 }
 
 /* o' = acos(cos o + v / V), on the same side of the velocity as o; the shift is |o| - o', with the

@@ -155,21 +155,21 @@ static fx_bam_t back_of(const struct lm_target_line *line,
 }
 
 /* Closing speed of a target; 0 if nothing depends on it. */
-static int32_t closing_mm_s(const struct lm_target_line *line, const struct lm_target *t,
+static int32_t closing_mm_s(const struct lm_target_line *line,
                             const struct lm_target_candidate *candidate)
 {
     const bool is_asked_for = line->is_doppler || line->gate_mm_s[1] != 0;
-    return is_asked_for && t->speed_mm_s != 0
-               ? lm_mover_closing_mm_s(t->speed_mm_s, candidate->state.heading,
+    return is_asked_for && candidate->is_mover
+               ? lm_mover_closing_mm_s(candidate->state.speed_mm_s, candidate->state.course,
                                        back_of(line, candidate))
                : 0;
 }
 
-static bool find_apparent(const struct lm_target_line *line, const struct lm_target *t,
+static bool find_apparent(const struct lm_target_line *line,
                           const struct lm_target_candidate *candidate,
                           struct apparent_position *seen)
 {
-    const int32_t closing = closing_mm_s(line, t, candidate);
+    const int32_t closing = closing_mm_s(line, candidate);
     if (!lm_target_view_locate(line->position, candidate->state.position, &seen->range_m_q8,
                                &seen->azimuth) ||
         !is_in_gate(line, closing, seen->azimuth)) {
@@ -282,14 +282,14 @@ static void make_point_echo(struct echo *e, const struct lm_target_line *line,
                             const struct lm_target_candidate *candidate,
                             const struct apparent_position *seen)
 {
-    const struct lm_target *t = &set->items[candidate->index];
+    const struct lm_target_body *body = &candidate->body;
     e->count = 1;
-    e->returns[0] = (struct lm_return){.up_mm = top_mm(lm_target_signature(set, t))};
+    e->returns[0] = (struct lm_return){.up_mm = top_mm(lm_target_signature(set, body))};
     e->cell[0] = lit_cell(line, horizon, candidate, seen, e->returns[0].up_mm);
     if (e->cell[0] != NO_CELL) {
         const struct lm_target_view v = view_of(line, candidate, seen->range_m_q8);
         e->returns[0].rcs_dbsm_q8 =
-            lm_target_view_rcs_dbsm_q8(set, t, &v, line->scan, line->pulse) +
+            lm_target_view_rcs_dbsm_q8(set, body, &v, line->scan, line->pulse) +
             share_db_q8(line, seen) + seen->gain_db_q8;
     }
 }
@@ -351,7 +351,7 @@ static bool sees_top(const struct lm_target_line *line, const struct lm_target_h
                      const struct lm_target_set *set, const struct lm_target_candidate *candidate,
                      const struct apparent_position *seen)
 {
-    const int32_t up_mm = top_mm(lm_target_signature(set, &set->items[candidate->index]));
+    const int32_t up_mm = top_mm(lm_target_signature(set, &candidate->body));
     const struct apparent_position ahead = {.range_m_q8 = seen->range_m_q8,
                                             .azimuth = line->azimuth};
     return lit_cell(line, horizon, candidate, &ahead, up_mm) != NO_CELL;
@@ -379,7 +379,6 @@ static uint32_t add_target(const struct lm_target_candidates *candidates,
                            const struct lm_target_horizon *horizon,
                            const struct apparent_position *seen, int32_t *level_db_q8)
 {
-    const struct lm_target *t = &candidates->set.items[candidate->index];
     struct echo echo;
     if (lm_chip_of(candidate) && line->stretch_cells == 0) {
         int32_t *ground_db_q8 = line->clutter_db_q8 ? line->clutter_db_q8 : level_db_q8;
@@ -387,10 +386,11 @@ static uint32_t add_target(const struct lm_target_candidates *candidates,
                    ? add_chip(line, candidate, seen, ground_db_q8)
                    : 0;
     }
-    if (t->scatterer_count == 0) {
+    if (candidate->scatterer_count == 0) {
         make_point_echo(&echo, line, horizon, &candidates->set, candidate, seen);
     } else {
-        make_scatterers_echo(&echo, line, horizon, t, candidate, seen);
+        make_scatterers_echo(&echo, line, horizon, &candidates->set.items[candidate->index],
+                             candidate, seen);
     }
     return add_echo(&echo, line, level_db_q8);
 }
@@ -402,9 +402,8 @@ uint32_t lm_target_line_add(const struct lm_target_candidates *candidates,
     uint32_t cells = 0;
     for (uint32_t left = find_in_reach(candidates, line); left != 0; left &= left - 1) {
         const struct lm_target_candidate *candidate = &candidates->candidate[fx_ctz64(left)];
-        const struct lm_target *t = &candidates->set.items[candidate->index];
         struct apparent_position seen;
-        if (find_apparent(line, t, candidate, &seen)) {
+        if (find_apparent(line, candidate, &seen)) {
             cells += add_target(candidates, candidate, line, horizon, &seen, level_db_q8);
         }
     }

@@ -52,14 +52,16 @@ static int32_t area_dbm2_q8(const struct lm_patch_geometry *g, int32_t range_m_q
  * Both times S / s, as all lengths across.
  * The radar flies by it at V - v' instead of V, so its displacement drifts while the dwell lasts.
  */
-static void put_mover(const struct lm_patch_geometry *g, const struct lm_target *t,
-                      fx_bam_t heading, struct patch_position *position)
+static void put_mover(const struct lm_patch_geometry *g, const struct lm_mover_state *state,
+                      struct patch_position *position)
 {
     /* Speeds are below 2^20, ranges below 2^27, the dwell below 2^17: products are below 2^58. A
      * displacement beyond 2^26 is far outside of any patch. */
     const fx_bam_t ray = g->look + position->aside;
-    const int64_t closing_mm_s = lm_mover_closing_mm_s(t->speed_mm_s, heading, ray + FX_BAM_180);
-    const int64_t right_mm_s = lm_mover_closing_mm_s(t->speed_mm_s, heading, ray + FX_BAM_90);
+    const int64_t closing_mm_s =
+        lm_mover_closing_mm_s(state->speed_mm_s, state->course, ray + FX_BAM_180);
+    const int64_t right_mm_s =
+        lm_mover_closing_mm_s(state->speed_mm_s, state->course, ray + FX_BAM_90);
     const int64_t shift_m_q8 = g->centre_m_q8 * closing_mm_s / g->across_mm_s, limit = 1 << 26;
     const int64_t drift_mm_s = 2 * right_mm_s - right_mm_s * right_mm_s / g->across_mm_s;
     position->shift_m_q8 = (int32_t)fx_clamp_i64(shift_m_q8, -limit, limit);
@@ -68,7 +70,7 @@ static void put_mover(const struct lm_patch_geometry *g, const struct lm_target 
     position->walk_m_q8 = lm_m_q8_of_um(-closing_mm_s * g->dwell_ms);
 }
 
-static bool find_position(const struct lm_patch_geometry *g, const struct lm_target *t,
+static bool find_position(const struct lm_patch_geometry *g,
                           const struct lm_target_candidate *candidate,
                           struct patch_position *position)
 {
@@ -84,8 +86,8 @@ static bool find_position(const struct lm_patch_geometry *g, const struct lm_tar
     position->aside = fx_atan2(position->across_m_q8, fx_max_i32(position->range_m_q8, 1));
     position->shift_m_q8 = 0;
     position->smear_across_m_q8 = position->walk_m_q8 = 0;
-    if (t->speed_mm_s != 0 && g->across_mm_s != 0) {
-        put_mover(g, t, candidate->state.heading, position);
+    if (candidate->is_mover && g->across_mm_s != 0) {
+        put_mover(g, &candidate->state, position);
     }
     return true;
 }
@@ -152,18 +154,17 @@ static void add_returns(struct lm_target_patch *p, const struct lm_target_set *s
                         const struct lm_patch_geometry *g, const struct patch_position *position,
                         uint8_t target)
 {
-    const struct lm_target *t = &set->items[candidate->index];
-    const struct lm_signature *s = lm_target_signature(set, t);
+    const struct lm_signature *s = lm_target_signature(set, &candidate->body);
     struct lm_return returns[LM_SCATTERERS_MAX];
     struct lm_target_view v;
     uint32_t count = 1;
     lm_target_view_of(&v, candidate, g->look + position->aside + FX_BAM_180,
                       ray_range_m_q8(position), &g->heights);
-    if (t->scatterer_count != 0) {
-        count = lm_target_returns(t, &v, g->wavelength_um, returns);
+    if (candidate->scatterer_count != 0) {
+        count = lm_target_returns(&set->items[candidate->index], &v, g->wavelength_um, returns);
     } else {
-        returns[0] =
-            (struct lm_return){.rcs_dbsm_q8 = lm_target_view_rcs_dbsm_q8(set, t, &v, g->epoch, 0)};
+        returns[0] = (struct lm_return){
+            .rcs_dbsm_q8 = lm_target_view_rcs_dbsm_q8(set, &candidate->body, &v, g->epoch, 0)};
     }
     for (uint32_t k = 0; k < count; k++) {
         struct lm_patch_scatterer *scatterer = &p->scatterer[p->scatterer_count++];
@@ -260,7 +261,7 @@ void lm_target_patch_set(struct lm_target_patch *p, const struct lm_target_candi
         const struct lm_chip_slot *slot = lm_chip_of(candidate);
         struct lm_patch_target *t = &p->target[p->target_count];
         struct patch_position position;
-        if (find_position(g, &candidates->set.items[candidate->index], candidate, &position)) {
+        if (find_position(g, candidate, &position)) {
             t->smear = lm_smear_of(lm_cells_q8_of_m_q8(position.smear_across_m_q8, g->cell_m_q8),
                                    lm_cells_q8_of_m_q8(position.walk_m_q8, g->cell_m_q8));
             t->begin = p->scatterer_count;

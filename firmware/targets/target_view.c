@@ -60,16 +60,17 @@ void lm_target_view_of(struct lm_target_view *v, const struct lm_target_candidat
                        lm_mm_of_m_q10(slant_m_q10));
 }
 
-int32_t lm_target_view_rcs_dbsm_q8(const struct lm_target_set *set, const struct lm_target *t,
+int32_t lm_target_view_rcs_dbsm_q8(const struct lm_target_set *set,
+                                   const struct lm_target_body *body,
                                    const struct lm_target_view *v, uint32_t scan, uint32_t pulse)
 {
-    const struct lm_signature *s = lm_target_signature(set, t);
+    const struct lm_signature *s = lm_target_signature(set, body);
     if (s) {
         return lm_signature_rcs_dbsm_q8(s, v->bearing, v->elevation);
     }
-    return t->flags & LM_TARGET_HAS_SIGNATURE
+    return body->flags & LM_TARGET_HAS_SIGNATURE
                ? LM_RCS_NONE_DBSM_Q8
-               : lm_swerling_dbsm_q8(t->swerling, t->mean_rcs_dbsm_q8, t->id, scan, pulse);
+               : lm_swerling_dbsm_q8(body->swerling, body->mean_rcs_dbsm_q8, body->id, scan, pulse);
 }
 
 int64_t lm_target_view_tangent_q38(int32_t top_m_q10, uint32_t range_m_q8,

@@ -188,6 +188,8 @@ static bool sample_ahead(struct lm_picture *p, uint64_t now_us, uint32_t *azimut
         lm_sector_sample_ahead(s, &p->lent.map->tiles, &platform, azimuths, &p->line);
     if (s->samples != samples) {
         lm_coverage_add(&p->coverage, &p->line.ground, s->grid.cells);
+        /* Looking through the live targets and drawing them takes the time of composing. */
+        p->is_step_spent |= s->targets->live->count != 0;
     }
     return has_all;
 }

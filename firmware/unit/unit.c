@@ -52,6 +52,7 @@ int lm_unit_init(struct lm_unit *u, const struct lm_board *board)
     if (status != LM_OK) {
         return status;
     }
+    u->map.target_set.live = &u->live.live;
     const struct lm_bus_profile *bus = board->bus_profile ? board->bus_profile
                                        : u->map.bus       ? u->map.bus
                                                           : &lm_bus_canas17;

@@ -115,7 +115,7 @@ static struct lm_target_set parked(struct world *w)
         };
     }
     lm_chips_init(&w->chips, &w->db, &w->signature);
-    return (struct lm_target_set){w->targets, TARGETS, &w->signature, 1};
+    return (struct lm_target_set){w->targets, TARGETS, &w->signature, 1, NULL};
 }
 
 /* `targets` may be NULL. */

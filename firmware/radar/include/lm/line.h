@@ -44,6 +44,7 @@
 /* Targets that a line may meet, and the line's own geometry. */
 struct lm_line_targets {
     const struct lm_target_candidates *candidates; /* borrowed; selected for this sweep or patch */
+    const struct lm_target_candidates *live;       /* borrowed; selected for this line */
     struct lm_target_line where;
 };
 

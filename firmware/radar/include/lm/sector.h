@@ -119,6 +119,7 @@ struct lm_sector {
     struct lm_receiver receiver;
     struct lm_weather weather;
     struct lm_target_candidates candidates;
+    struct lm_target_candidates live; /* of the sample taken last */
 
     struct lm_foreground foreground;     /* no cells in its grid: the line begins at the antenna */
     lm_horizon_q40_t foreground_horizon; /* horizon behind the foreground last traced */

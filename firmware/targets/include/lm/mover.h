@@ -5,10 +5,12 @@
 
 #include "lm/target.h"
 
-/* Position and heading of a target at some time. */
+/* Position and motion of a target at some time. */
 struct lm_mover_state {
     struct lm_position position;
     fx_bam_t heading; /* of the target's forward axis, from north */
+    fx_bam_t course;  /* of its velocity: of a target of the image, its heading */
+    uint32_t speed_mm_s;
 };
 
 /* State of target `t` at `time_us` of the unit's clock. `t` is a checked record.
@@ -24,7 +26,7 @@ struct lm_mover_state lm_mover_state_at(const struct lm_target *t, uint64_t time
 
 /* Closing speed of a mover along the ground; negative if it goes away. `back` is the direction from
  * the mover to the radar. */
-int32_t lm_mover_closing_mm_s(uint32_t speed_mm_s, fx_bam_t heading, fx_bam_t back);
+int32_t lm_mover_closing_mm_s(uint32_t speed_mm_s, fx_bam_t course, fx_bam_t back);
 
 /* Displacement of a mover by Doppler: *shift is the signed angle, right positive, from its true
  * azimuth to the one where it appears. That is where still ground, on the same side of the

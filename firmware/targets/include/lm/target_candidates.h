@@ -3,6 +3,7 @@
 #ifndef LM_TARGET_CANDIDATES_H
 #define LM_TARGET_CANDIDATES_H
 
+#include "lm/live.h"
 #include "lm/mover.h"
 #include "lm/signature.h"
 #include "lm/tile_cache.h"
@@ -13,17 +14,32 @@ enum {
     LM_TARGET_EXTENT_M = 512       /* more than any scatterer's distance from its target's origin */
 };
 
-/* Targets of an image, as they were read at start-up. */
+/* Targets of an image, as they were read at start-up, and those that the bus moves. */
 struct lm_target_set {
     const struct lm_target *items;         /* borrowed; checked records */
     uint32_t count;                        /* up to 65535 */
     const struct lm_signature *signatures; /* borrowed; checked records, or 0 aspects: a lost one */
     uint32_t signature_count;
+    const struct lm_live *live; /* borrowed; NULL: none */
+};
+
+/* True if there is any target at present. */
+static inline bool lm_target_set_has_any(const struct lm_target_set *set)
+{
+    return set->count != 0 || (set->live && set->live->count != 0);
+}
+
+/* What a target returns, if it has no scatterers: a copy of its record's members. */
+struct lm_target_body {
+    uint32_t id;
+    int32_t mean_rcs_dbsm_q8;
+    uint8_t swerling, signature;
+    uint16_t flags;
 };
 
 /* Signature of a target of the set; NULL if it has none or if it was lost. Owned by the set. */
 const struct lm_signature *lm_target_signature(const struct lm_target_set *set,
-                                               const struct lm_target *t);
+                                               const struct lm_target_body *body);
 
 /* Query for candidates: position, reach and time of a sweep or patch. */
 struct lm_target_query {
@@ -33,6 +49,7 @@ struct lm_target_query {
     struct lm_tile_cache *tiles; /* borrowed for the call: terrain below targets whose elevation is
                                     above ground; NULL: that terrain is at 0 */
     uint8_t lod;                 /* LOD that the terrain is read from */
+    uint32_t displaced_q16;      /* of a patch: metres that it displaces by for each mm/s; else 0 */
 };
 
 struct lm_chip_slot;
@@ -46,8 +63,10 @@ struct lm_target_candidates {
     uint32_t count;
     uint32_t left_out; /* targets in reach beyond LM_TARGET_CANDIDATES_MAX */
     struct lm_target_candidate {
-        uint16_t index; /* in the set */
+        uint16_t index; /* in the set; of a live target, its number */
         bool is_mover;
+        uint8_t scatterer_count; /* 0 of a live target */
+        struct lm_target_body body;
         uint32_t distance_m_q8;        /* approximate, from the query's position */
         int32_t north_m_q8, east_m_q8; /* approximate, from the query's position */
         uint32_t slack_m_q8; /* radius of a circle about there that holds the whole target, up to 88
@@ -59,12 +78,35 @@ struct lm_target_candidates {
     } candidate[LM_TARGET_CANDIDATES_MAX];
 };
 
-/* Select the targets up to reach_m + LM_TARGET_DRIFT_M away: the first LM_TARGET_CANDIDATES_MAX of
- * them in the order of the image. They have no chips yet (lm_chips_choose). Cost: about 600
- * instructions a target, 800 more for a mover, 300 more for one above ground. */
+/* Select the targets of the image up to reach_m + LM_TARGET_DRIFT_M away: the first
+ * LM_TARGET_CANDIDATES_MAX of them in the order of the image. They have no chips yet
+ * (lm_chips_choose). Cost: about 600 instructions a target, 800 more for a mover, 300 more for one
+ * above ground. */
 void lm_target_candidates_select(struct lm_target_candidates *candidates,
                                  const struct lm_target_set *set,
                                  const struct lm_target_query *query);
+
+/* Add the live targets within the query's reach, as far as there is room. Cost: 80 instructions for
+ * each that is there, and about 1,500 for each that is added. */
+void lm_target_candidates_add_live(struct lm_target_candidates *candidates,
+                                   const struct lm_target_query *query);
+
+/* What a line needs to know to find the live targets that appear on it. */
+struct lm_live_line {
+    fx_bam_t azimuth, width;       /* of the line, as in lm/target_line.h */
+    uint32_t begin_m_q8, end_m_q8; /* of its cells */
+    bool is_doppler;
+    uint32_t speed_mm_s; /* of the antenna over the ground */
+    fx_bam_t track, beam;
+};
+
+/* Select the live targets that the line may show: those that appear within its width, by a plane
+ * around the antenna. The query's position is the antenna's now; its time is that of the sweep.
+ * Cost: 90 instructions for each live target, and about 1,500 for each selected. */
+void lm_target_candidates_of_line(struct lm_target_candidates *candidates,
+                                  const struct lm_target_set *set,
+                                  const struct lm_target_query *query,
+                                  const struct lm_live_line *line);
 
 /* Select again, unless that was done for the same time within LM_TARGET_DRIFT_M of the query's
  * position. True if it was done now. */

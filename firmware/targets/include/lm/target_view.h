@@ -35,7 +35,8 @@ void lm_target_view_of(struct lm_target_view *v, const struct lm_target_candidat
 /* Cross section of a target without scatterers: of its signature as `v` sees it, or one draw of
  * lm_swerling_dbsm_q8. LM_RCS_NONE_DBSM_Q8 if its signature was lost. `scan` and `pulse` choose the
  * draw. */
-int32_t lm_target_view_rcs_dbsm_q8(const struct lm_target_set *set, const struct lm_target *t,
+int32_t lm_target_view_rcs_dbsm_q8(const struct lm_target_set *set,
+                                   const struct lm_target_body *body,
                                    const struct lm_target_view *v, uint32_t scan, uint32_t pulse);
 
 /* Tangent of the elevation angle at which a height appears from the antenna, with the Earth's

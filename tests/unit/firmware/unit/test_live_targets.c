@@ -1,0 +1,384 @@
+/* Live targets in the pictures: beside targets of the image that move alike. */
+#include "hs/angle.h"
+#include "lm/unit.h"
+
+#include "check.h"
+#include "scales.h"
+#include "target_support.h"
+#include "tiny_map.h"
+#include "unit_rig.h"
+
+#include <stdlib.h>
+
+enum { SLOTS = 32, SIDE = 256, S = 1000000, LINES_MAX = LM_SECTOR_LINES_MAX };
+
+static struct tiny_map map;
+static struct lm_line line;
+static struct lm_tone tone;
+static struct lm_live live;
+
+/* Flat soil for 5 km around 46 N 11 E, all of it read. */
+static void open_soil(void)
+{
+    struct tiny_spec spec = tiny_spec_at(46, 11);
+    spec.shift0 = 12;
+    spec.rows = spec.columns = 4;
+    tiny_map_open(&map, &spec, SLOTS);
+    assert_int_equal(lm_tone_set(&tone, &lm_radar_default.sar.tone), LM_OK);
+}
+
+/* A mover of the image, steady, and the same one as a live target that was told 2 s before. */
+static struct lm_target image_mover(double latitude, double longitude, double heading_deg,
+                                    double speed_m_s)
+{
+    struct lm_target t = point_at(latitude, longitude, 3, 45);
+    t.flags = LM_TARGET_ABOVE_GROUND;
+    t.heading = hs_bam(heading_deg);
+    t.speed_mm_s = (uint32_t)lround(speed_m_s * 1000);
+    t.leg_m = speed_m_s > 0 ? 50000 : 0;
+    seal_target(&t);
+    return t;
+}
+
+static void tell(const struct lm_target *t, uint32_t number, uint64_t told_us)
+{
+    const struct lm_mover_state was = lm_mover_state_at(t, told_us);
+    const double heading = hs_degrees(t->heading) * M_PI / 180;
+    memset(&live, 0, sizeof live);
+    live.target[number] =
+        (struct lm_live_target){.motion_us = told_us,
+                                .heard_us = told_us,
+                                .position = was.position,
+                                .velocity = {(int16_t)lround(t->speed_mm_s / 50.0 * sin(heading)),
+                                             (int16_t)lround(t->speed_mm_s / 50.0 * cos(heading))},
+                                .heading = t->heading,
+                                .rcs_dbsm_q8 = (int16_t)t->mean_rcs_dbsm_q8,
+                                .height_m_q6 = t->elevation_m_q6,
+                                .has_height = true, /* the soil is at 0 */
+                                .kind = LM_LIVE_REFLECTOR,
+                                .reckoning = LM_LIVE_RPB,
+                                .is_there = true};
+    live.count = 1;
+}
+
+/* ---- sweeps ---- */
+
+struct view {
+    uint8_t mode, fov;
+};
+
+static uint32_t sweep(struct view view, const struct lm_target_set *set,
+                      int32_t level_q8[LINES_MAX][SIDE])
+{
+    static struct lm_sector sector;
+    const struct lm_platform platform = {.position = {hs_bam(45.95), hs_bam(10.95)},
+                                         .height_m_q10 = 3000 * 1024,
+                                         .heading = hs_bam(35),
+                                         .track = hs_bam(0),
+                                         .speed_mm_s = 180000,
+                                         .time_us = 7 * S};
+    const struct lm_sector_command command = {.mode = view.mode,
+                                              .fov = view.fov,
+                                              .range_index = scale_of(10),
+                                              .centre = {hs_bam(46), hs_bam(11)}};
+    lm_sector_start(&sector, &lm_radar_default, &command, 5);
+    sector.targets = set;
+    memset(level_q8, 0, LINES_MAX * sizeof *level_q8);
+    do {
+        const uint32_t drawn = lm_sector_draw_line(&sector, &map.tiles, &platform, &tone, &line);
+        memcpy(level_q8[drawn], sector.level_db_q8, sizeof *level_q8);
+    } while (!lm_sector_is_at_edge(&sector));
+    return sector.lines;
+}
+
+struct difference {
+    int rises; /* cells that are brighter by 3 dB */
+    int most;  /* greatest difference of either sign */
+};
+
+static struct difference compare(int32_t a[LINES_MAX][SIDE], int32_t b[LINES_MAX][SIDE])
+{
+    struct difference d = {0, 0};
+    for (int k = 0; k < LINES_MAX; k++) {
+        for (int i = 0; i < SIDE; i++) {
+            d.rises += a[k][i] > b[k][i] + 3 * 256;
+            d.most = abs(a[k][i] - b[k][i]) > d.most ? abs(a[k][i] - b[k][i]) : d.most;
+        }
+    }
+    return d;
+}
+
+static const struct view views[] = {{LM_SECTOR_GM, LM_FOV_NORM},  {LM_SECTOR_GMT, LM_FOV_NORM},
+                                    {LM_SECTOR_SEA, LM_FOV_NORM}, {LM_SECTOR_GM, LM_FOV_EXP},
+                                    {LM_SECTOR_GMT, LM_FOV_EXP},  {LM_SECTOR_GM, LM_FOV_DBS1},
+                                    {LM_SECTOR_GM, LM_FOV_DBS2}};
+
+TEST(a_live_mover_is_drawn_as_a_mover_of_the_image_in_every_mode)
+{
+    static int32_t without[LINES_MAX][SIDE], image[LINES_MAX][SIDE], told[LINES_MAX][SIDE];
+    static const double headings[] = {0, 90, 216.8698976};
+    const struct lm_target_set none = {0}, live_set = {.live = &live};
+    open_soil();
+    for (size_t v = 0; v < sizeof views / sizeof *views; v++) {
+        sweep(views[v], &none, without);
+        for (size_t h = 0; h < sizeof headings / sizeof *headings; h++) {
+            /* DBS shows what is displaced by no more than a beam. */
+            const double speed_m_s = views[v].fov >= LM_FOV_DBS1 ? 4 : 12;
+            const struct lm_target t = image_mover(46.002, 11.001, headings[h], speed_m_s);
+            const struct lm_target_set set = {.items = &t, .count = 1};
+            tell(&t, 255, 5 * S);
+            sweep(views[v], &set, image);
+            sweep(views[v], &live_set, told);
+            const struct difference shown = compare(image, without), apart = compare(told, image);
+            print_message("# mode %d field %d heading %.0f: %d cells, at most %.2f dB apart\n",
+                          views[v].mode, views[v].fov, headings[h], shown.rises,
+                          apart.most / 256.0);
+            assert_true(shown.rises > 3);
+            assert_true(apart.most < 256);
+        }
+    }
+    tiny_map_close(&map);
+}
+
+/* Of 5 m/s towards the radar across the track, DBS displaces by 5 / 180 of the range. */
+TEST(doppler_displaces_a_live_mover_as_the_law_says)
+{
+    static int32_t still[LINES_MAX][SIDE], moving[LINES_MAX][SIDE];
+    const struct lm_target_set live_set = {.live = &live};
+    const struct view view = {LM_SECTOR_GM, LM_FOV_DBS1};
+    open_soil();
+    struct lm_target t = image_mover(46, 11, 215, 0);
+    tell(&t, 3, 7 * S);
+    const uint32_t lines = sweep(view, &live_set, still);
+    t = image_mover(46, 11, 215, 5);
+    tell(&t, 3, 7 * S);
+    live.target[3].position = (struct lm_position){hs_bam(46), hs_bam(11)};
+    sweep(view, &live_set, moving);
+    int at[2] = {0, 0}, most[2] = {INT32_MIN, INT32_MIN};
+    for (int k = 0; k < (int)lines; k++) {
+        for (int i = 0; i < SIDE; i++) {
+            if (still[k][i] > most[0]) {
+                most[0] = still[k][i];
+                at[0] = k;
+            }
+            if (moving[k][i] > most[1]) {
+                most[1] = moving[k][i];
+                at[1] = k;
+            }
+        }
+    }
+    print_message("# line %d still, %d moving, of %u\n", at[0], at[1], lines);
+    assert_true(abs(at[1] - at[0]) > 5);
+    tiny_map_close(&map);
+}
+
+TEST(terrain_hides_a_live_target)
+{
+    static int32_t with[LINES_MAX][SIDE], without[LINES_MAX][SIDE];
+    const struct lm_target_set none = {0}, live_set = {.live = &live};
+    open_soil();
+    const struct lm_target t = image_mover(46, 11, 0, 0);
+    for (size_t v = 0; v < sizeof views / sizeof *views; v++) {
+        if (views[v].mode != LM_SECTOR_GMT) {
+            sweep(views[v], &none, without);
+            tell(&t, 0, 7 * S);
+            sweep(views[v], &live_set, with);
+            assert_true(compare(with, without).rises > 3);
+            live.target[0].height_m_q6 = -100 * 64;
+            sweep(views[v], &live_set, with);
+            assert_memory_equal(with, without, sizeof with);
+        }
+    }
+    tiny_map_close(&map);
+}
+
+/* 256 within the sweep: each is brighter than the ground at its place, but those that its beam and
+ * bin share with others. */
+TEST(all_256_are_drawn)
+{
+    static int32_t with[LINES_MAX][SIDE], without[LINES_MAX][SIDE];
+    const struct lm_target_set none = {0}, live_set = {.live = &live};
+    open_soil();
+    for (size_t v = 0; v < sizeof views / sizeof *views; v++) {
+        if (views[v].mode == LM_SECTOR_GMT) {
+            continue;
+        }
+        sweep(views[v], &none, without);
+        const struct lm_target t = image_mover(46, 11, 0, 0);
+        int shown = 0;
+        tell(&t, 0, 7 * S);
+        const struct lm_live_target one = live.target[0];
+        /* In each beam less than 32. */
+        const double side_deg = views[v].fov <= LM_FOV_EXP ? 0.04 : 0.03;
+        live.count = LM_LIVE_MAX;
+        for (int i = 0; i < LM_LIVE_MAX; i++) {
+            live.target[i] = one;
+            live.target[i].position =
+                (struct lm_position){hs_bam(46 + side_deg * (i / 16 - 7.5) / 16),
+                                     hs_bam(11 + 1.4 * side_deg * (i % 16 - 7.5) / 16)};
+        }
+        sweep(views[v], &live_set, with);
+        shown = compare(with, without).rises;
+        /* Alone, each in turn: whatever it brightens is as bright with all. */
+        int lost = 0;
+        static int32_t alone[LINES_MAX][SIDE];
+        static struct lm_live all;
+        all = live;
+        for (int i = 0; i < LM_LIVE_MAX; i += 17) {
+            memset(&live, 0, sizeof live);
+            live.target[i] = all.target[i];
+            live.count = 1;
+            sweep(views[v], &live_set, alone);
+            for (int k = 0; k < LINES_MAX * SIDE; k++) {
+                const int a = alone[k / SIDE][k % SIDE];
+                lost +=
+                    a > without[k / SIDE][k % SIDE] + 6 * 256 && with[k / SIDE][k % SIDE] < a - 256;
+            }
+        }
+        print_message("# mode %d field %d: %d cells brighter, %d lost\n", views[v].mode,
+                      views[v].fov, shown, lost);
+        assert_int_equal(lost, 0);
+        assert_true(shown > 256);
+    }
+    tiny_map_close(&map);
+}
+
+/* ---- patches ---- */
+
+static void draw_patch(const struct lm_target_set *set, uint8_t picture[SIDE][SIDE])
+{
+    static struct lm_sar sar;
+    const struct lm_sar_command command = {.centre = {hs_bam(46), hs_bam(11)},
+                                           .range_m = 20000,
+                                           .height_m_q6 = 6000 * 64,
+                                           .look_azimuth = hs_bam(90),
+                                           .cell_mm = 4000};
+    const struct lm_sar_setup scene = {
+        .targets = set, .epoch = 5, .sea_state = LM_SEA_STATE_OF_IMAGE, .time_us = 7 * S};
+    assert_int_equal(lm_sar_start(&sar, &lm_radar_default, &map.db, &command, &scene), LM_OK);
+    const int beside = ((int)sar.lines - SIDE) / 2;
+    for (int k = -beside; k < SIDE + beside; k++) {
+        lm_sar_draw_line(&sar, &map.tiles, &tone, &line);
+        if (k >= 0 && k < SIDE) {
+            memcpy(picture[k], line.grey + LM_SAR_GUARD, SIDE);
+        }
+    }
+}
+
+static int brighter(uint8_t a[SIDE][SIDE], uint8_t b[SIDE][SIDE], int *most)
+{
+    int cells = 0;
+    *most = 0;
+    for (int k = 0; k < SIDE * SIDE; k++) {
+        const int rise = a[k / SIDE][k % SIDE] - b[k / SIDE][k % SIDE];
+        cells += rise > 30;
+        *most = abs(rise) > *most ? abs(rise) : *most;
+    }
+    return cells;
+}
+
+TEST(a_patch_displaces_and_smears_a_live_mover_as_one_of_the_image)
+{
+    static uint8_t without[SIDE][SIDE], image[SIDE][SIDE], told[SIDE][SIDE];
+    static const double motions[][2] = {
+        {0, 0}, {270, 1.5}, {0, 3}, {180 + 36.8698976, 2.5}, {90, 1}};
+    const struct lm_target_set none = {0}, live_set = {.live = &live};
+    open_soil();
+    draw_patch(&none, without);
+    for (size_t i = 0; i < sizeof motions / sizeof *motions; i++) {
+        const struct lm_target t = image_mover(46, 11, motions[i][0], motions[i][1]);
+        const struct lm_target_set set = {.items = &t, .count = 1};
+        int most, apart;
+        tell(&t, 77, 5 * S);
+        draw_patch(&set, image);
+        draw_patch(&live_set, told);
+        const int shown = brighter(image, without, &most);
+        brighter(told, image, &apart);
+        print_message("# heading %.0f, %.1f m/s: %d cells, at most %d grey apart\n", motions[i][0],
+                      motions[i][1], shown, apart);
+        assert_true(shown > 4);
+        assert_true(apart < 30);
+        live.target[77].height_m_q6 = -100 * 64; /* below the ground */
+        draw_patch(&live_set, told);
+        assert_memory_equal(told, without, sizeof told);
+    }
+    tiny_map_close(&map);
+}
+
+/* ---- the unit ---- */
+
+/* The rig's bus, and live targets between its frames. */
+static struct {
+    const struct lm_can *flight;
+    struct rig *rig;
+    uint64_t next_us;
+    uint32_t sent, sets;
+    bool is_silent;
+} feed;
+
+static struct lm_can_frame live_frame(uint32_t number)
+{
+    static const uint16_t ids[] = {1815, 1810, 1811, 1812, 1813, 1814};
+    static const uint8_t types[] = {LM_CANAS_UCHAR4, LM_CANAS_LONG,   LM_CANAS_LONG,
+                                    LM_CANAS_FLOAT,  LM_CANAS_SHORT2, LM_CANAS_SHORT2};
+    const uint32_t target = number / 6 % LM_LIVE_MAX, part = number % 6;
+    const float height = 300;
+    uint32_t words[6] = {0x02020007u,
+                         (uint32_t)(460000000 + 5000 * (target / 16)),
+                         (uint32_t)(110000000 + 5000 * (target % 16)),
+                         0,
+                         0x00640000u,
+                         0};
+    memcpy(&words[3], &height, sizeof height);
+    struct lm_can_frame f = {.id = ids[part], .length = 8, .time_us = feed.rig->now_us};
+    const uint8_t head[] = {30, types[part], (uint8_t)target, (uint8_t)(number / 6)};
+    memcpy(f.data, head, 4);
+    for (int i = 0; i < 4; i++) {
+        f.data[4 + i] = (uint8_t)(words[part] >> (24 - 8 * i));
+    }
+    return f;
+}
+
+static int receive(void *ctx, struct lm_can_frame *frame)
+{
+    (void)ctx;
+    if (!feed.is_silent && feed.rig->now_us >= feed.next_us) {
+        *frame = live_frame(feed.sent++);
+        feed.next_us += S / (6 * LM_LIVE_MAX);
+        return 1;
+    }
+    return feed.flight->receive(feed.flight->ctx, frame);
+}
+
+TEST(the_unit_takes_256_live_targets_at_1_hz_and_loses_none)
+{
+    struct rig *r = fly_rig();
+    const struct lm_board *was = r->unit.board;
+    struct lm_board board = *was;
+    struct lm_can can = *was->can;
+    can.receive = receive;
+    can.ctx = NULL;
+    board.can = &can;
+    feed.flight = was->can;
+    feed.rig = r;
+    feed.next_us = r->now_us;
+    r->unit.board = &board;
+    const uint32_t lines = r->unit.count.lines, dropped = r->unit.count.lines_dropped;
+    run(r, 10);
+    const struct lm_live_bus *b = &r->unit.live;
+    assert_int_equal(b->live.count, LM_LIVE_MAX);
+    assert_in_range(b->count.sets, feed.sent / 6 - 1, feed.sent / 6);
+    assert_in_range(feed.sent, 15300, 15400);
+    assert_int_equal(b->count.torn + b->count.refused + b->count.rivals + b->count.aged, 0);
+    print_message("# %u frames, %u sets, %u lines, %u dropped\n", feed.sent, b->count.sets,
+                  r->unit.count.lines - lines, r->unit.count.lines_dropped - dropped);
+    assert_int_equal(r->unit.count.lines_dropped, dropped);
+    feed.is_silent = true;
+    run(r, 9);
+    assert_int_equal(b->live.count, LM_LIVE_MAX);
+    run(r, 2.2);
+    assert_int_equal(b->live.count, 0);
+    assert_int_equal(b->count.aged, LM_LIVE_MAX);
+    r->unit.board = was;
+    free_rig(r);
+}
