@@ -152,6 +152,22 @@ static int put_weather(struct sender *s, double now_s)
     return 0;
 }
 
+static int put_live(struct sender *s, double now_s, int64_t first_us)
+{
+    const double period_s = MINOR_US * 1e-6 / s->options->rate_scale;
+    struct canas_frame frames[NAV_LIVE_FRAMES];
+    for (int index = 0; index < s->options->live.count; index++) {
+        const int count = nav_live_frames(&s->options->live, index, &s->codes, now_s, period_s,
+                                          (double)(s->slot_us - first_us) * 1e-6, frames);
+        for (int i = 0; i < count; i++) {
+            if (put(s, &frames[i]) != 0) {
+                return -1;
+            }
+        }
+    }
+    return 0;
+}
+
 static int put_exercise(struct sender *s, double now_s, int64_t first_us)
 {
     struct canas_frame frames[NAV_EXERCISE_FRAMES];
@@ -202,6 +218,7 @@ int nav_send(const struct nav_track *track, const struct nav_send_options *optio
         if (nav_motion_covers(&s.motion, tick_us)) {
             const double now_s = (double)(tick_us - first_us) * 1e-6;
             failed = put_minor_frame(&s, n, tick_us) != 0 || put_weather(&s, now_s) != 0 ||
+                             put_live(&s, now_s, first_us) != 0 ||
                              put_exercise(&s, now_s, first_us) != 0
                          ? -1
                          : 0;

@@ -61,6 +61,17 @@ static const char *take_jammer(void *context, const char *text)
                : "needs LAT,LON,DB[,FROM_S[,UNTIL_S]] with -20..80 dB, up to four times";
 }
 
+static const char *take_live(void *context, const char *text)
+{
+    struct command *c = context;
+    double v[10];
+    return nav_live_add(&c->send.live, v, hs_numbers(text, ',', v, 10))
+               ? NULL
+               : "needs NUMBER,KIND,LAT,LON,COURSE_DEG,SPEED_MS[,HEIGHT_M[,TURN_DEG_S[,FROM_S"
+                 "[,UNTIL_S]]]] with a number of 0..255 that is not taken, a kind of 0..16, up to "
+                 "1000 m/s, 16000 m and 60 deg/s";
+}
+
 static const char *take_exercise_rate(void *context, const char *text)
 {
     struct command *c = context;
@@ -126,7 +137,8 @@ static bool read_table(struct command *c, struct raw *raw, int argc, char **argv
 {
     struct hs_taker circle = {take_circle, c}, straight = {take_straight, c},
                     interface = {take_interface, c}, begin = {take_begin, c}, rain = {take_rain, c},
-                    jammer = {take_jammer, c}, exercise_rate = {take_exercise_rate, c};
+                    jammer = {take_jammer, c}, live = {take_live, c},
+                    exercise_rate = {take_exercise_rate, c};
     const struct hs_option options[] = {
         {"TRACK", HS_INPUT_ARGUMENT, &c->track_path, 0, 0, NULL,
          "a .csv, .gpx, .igc, .kml or .kmz file, plain or .gz; - is standard input", false},
@@ -176,6 +188,12 @@ static bool read_table(struct command *c, struct raw *raw, int argc, char **argv
         {"weather-clear", HS_REAL, &raw->clear_s, 0, 1e9, "S",
          "take all of it away S seconds after the log's beginning; what is only not told any more "
          "is removed by the display after 10 s",
+         false},
+        {"live", HS_TAKER, &live, 0, 0,
+         "NUMBER,KIND,LAT,LON,COURSE_DEG,SPEED_MS[,HEIGHT_M[,TURN_DEG_S[,FROM_S[,UNTIL_S]]]]",
+         "tell of a live target once a second: it begins there, goes straight on or turns, at a "
+         "height above mean sea level, or on the ground where that is left out or below -1000, "
+         "and is removed at UNTIL_S; kinds are those of docs/bus.md; up to 256",
          false},
         {"exercise-clock", HS_REAL, &raw->clock_s, 0, 2147483, "S",
          "tell the clock of an exercise that began S seconds before the log, once a second: what "

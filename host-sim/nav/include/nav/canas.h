@@ -14,6 +14,7 @@ enum canas_type {
     CANAS_UCHAR = 10,
     CANAS_SHORT2 = 12,
     CANAS_CHAR4 = 15,
+    CANAS_UCHAR4 = 16,
     CANAS_DOUBLEH = 30,
     CANAS_DOUBLEL = 31
 };
@@ -43,6 +44,13 @@ enum canas_id {
     CANAS_RAIN_LATITUDE = 1800,    /* and 3 more: of the display's own, docs/bus.md, "Weather" */
     CANAS_JAMMER_LATITUDE = 1804,  /* and 2 more */
     CANAS_WEATHER_CLEAR = 1807,
+    CANAS_LIVE_LATITUDE = 1810, /* likewise, "Live targets" */
+    CANAS_LIVE_LONGITUDE = 1811,
+    CANAS_LIVE_HEIGHT = 1812,
+    CANAS_LIVE_VELOCITY = 1813,
+    CANAS_LIVE_HEADING = 1814,
+    CANAS_LIVE_KIND = 1815,
+    CANAS_LIVE_REMOVE = 1817,
     CANAS_EXERCISE_TIME = 1820, /* likewise, "Exercise clock" */
     CANAS_EXERCISE_RATE = 1821,
     CANAS_EXERCISE_SEED = 1822,

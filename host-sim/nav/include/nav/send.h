@@ -3,6 +3,7 @@
 #define NAV_SEND_H
 
 #include "nav/exercise.h"
+#include "nav/live.h"
 #include "nav/track.h"
 #include "nav/weather.h"
 
@@ -18,6 +19,7 @@ struct nav_send_options {
     int64_t from_us, until_us;  /* only frames of instants in [from, until) */
     struct nav_weather weather;
     struct nav_exercise exercise;
+    struct nav_live live;
 };
 
 #define NAV_RATE_SCALE_MIN 0.0125
@@ -32,8 +34,8 @@ struct nav_sent {
  * in every 8th, time and date in every 80th, on a grid aligned to whole seconds of UTC; 125 us
  * apart in ascending identifier, which is how the bus's arbitration would order them. Every value
  * is that of the instant its frame is sent; latitude, longitude and height belong to one instant,
- * that of the last frame of longitude. Weather and the exercise come behind these, once a second
- * whatever the rate scale. Nothing is sent in gaps.
+ * that of the last frame of longitude. Weather, live targets and the exercise come behind these,
+ * once a second whatever the rate scale. Nothing is sent in gaps.
  *
  * Writes the log to `out` and reports the sum. Returns 0, or -1 when `out` cannot be written
  * (reported by whoever closes it). Cost: about 1 us a frame. */

@@ -1,0 +1,38 @@
+/* Live targets on the bus: their frames as docs/bus.md, "Live targets", defines them. */
+#ifndef NAV_LIVE_H
+#define NAV_LIVE_H
+
+#include "nav/canas.h"
+
+#include <stdbool.h>
+
+enum { NAV_LIVE_MAX = 256, NAV_LIVE_FRAMES = 6, NAV_LIVE_KINDS = 17 };
+
+/* A target that goes straight on or turns evenly, told once a second from `from_s` until before
+ * `until_s`, seconds from the log's beginning, and then removed. */
+struct nav_live_item {
+    int number, kind;
+    double latitude_deg, longitude_deg; /* at from_s */
+    double course_deg, speed_ms;
+    double height_m; /* above mean sea level; below -1000: on the ground */
+    double turn_deg_s;
+    double from_s, until_s;
+};
+
+struct nav_live {
+    struct nav_live_item item[NAV_LIVE_MAX];
+    int count;
+};
+
+/* Take the numbers of --live NUMBER,KIND,LAT,LON,COURSE_DEG,SPEED_MS[,HEIGHT_M[,TURN_DEG_S
+ * [,FROM_S[,UNTIL_S]]]]. False, with *l unchanged, when they are out of range, or the number is
+ * taken. */
+bool nav_live_add(struct nav_live *l, const double *value, int count);
+
+/* The frames of target `index` to send in the minor frame that begins `now_s` after the log's
+ * beginning and lasts `period_s`; returns how many. Its numbers are those of `sent_s`. Targets are
+ * spread over the second by their index. */
+int nav_live_frames(const struct nav_live *l, int index, struct canas_codes *codes, double now_s,
+                    double period_s, double sent_s, struct canas_frame frames[NAV_LIVE_FRAMES]);
+
+#endif

@@ -1,0 +1,152 @@
+/* Live targets that landmass-nav sends, taken by the firmware. */
+#include "check.h"
+#include "drv/can_log.h"
+#include "hs/angle.h"
+#include "lm/bus.h"
+#include "lm/live_bus.h"
+#include "nav/make_track.h"
+#include "nav/send.h"
+#include "wgs84.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { S = 1000000 };
+
+/* Where a target is by the law of a circle, or on the geodesic. */
+static double miss_m(const struct nav_live_item *t, double seconds, struct lm_position found)
+{
+    const double x = t->turn_deg_s * seconds / 2 * M_PI / 180;
+    const double way_m = t->speed_ms * seconds * (x == 0 ? 1 : sin(x) / x);
+    double latitude, longitude;
+    wgs84_direct(t->latitude_deg, t->longitude_deg, t->course_deg + x * 180 / M_PI, way_m,
+                 &latitude, &longitude);
+    return wgs84_metres(latitude, longitude, hs_degrees(found.latitude),
+                        hs_degrees(found.longitude));
+}
+
+struct ear {
+    struct lm_bus bus;
+    struct lm_live_bus live;
+    uint64_t begin_us, now_us;
+    double worst_m;
+};
+
+static void compare(struct ear *ear, const struct nav_live *l)
+{
+    const double now_s = (double)(ear->now_us - ear->begin_us) * 1e-6;
+    for (int i = 0; i < l->count; i++) {
+        const struct nav_live_item *t = &l->item[i];
+        const struct lm_live_target *heard = &ear->live.live.target[t->number];
+        if (heard->is_there) {
+            const struct lm_live_state s = lm_live_at(heard, ear->now_us);
+            ear->worst_m = fmax(ear->worst_m, miss_m(t, now_s - t->from_s, s.position));
+        }
+    }
+}
+
+static void send(const struct nav_live *l, double seconds, struct ear *ear,
+                 void (*each)(struct ear *, const struct nav_live *))
+{
+    struct nav_track track = {0};
+    const struct nav_straight straight = {46, 11, 0, 3000, 150};
+    assert_int_equal(nav_make_straight(&straight, 1000 * (int64_t)S, seconds, &track), 0);
+    struct nav_send_options *options = calloc(1, sizeof *options);
+    options->interface = "can0";
+    options->rate_scale = 1;
+    options->until_us = INT64_MAX;
+    options->live = *l;
+    FILE *log_file = tmpfile();
+    struct nav_sent sent;
+    assert_int_equal(nav_send(&track, options, log_file, &sent), 0);
+    rewind(log_file);
+    struct drv_can_log log;
+    drv_can_log_init(&log, log_file, NULL, NULL);
+    drv_can_log_set_now(&log, UINT64_MAX);
+    const struct lm_can port = drv_can_log_port(&log);
+    struct lm_can_frame f;
+    struct lm_bus_event events[LM_BUS_EVENTS];
+    lm_bus_init(&ear->bus, &lm_bus_canas17);
+    while (port.receive(port.ctx, &f) == 1) {
+        ear->begin_us = ear->begin_us == 0 ? f.time_us : ear->begin_us;
+        ear->now_us = f.time_us;
+        const uint32_t count = lm_bus_take(&ear->bus, &f, events);
+        for (uint32_t i = 0; i < count; i++) {
+            lm_live_bus_take(&ear->live, &events[i], f.time_us);
+        }
+        each(ear, l);
+    }
+    fclose(log_file);
+    free(options);
+    nav_track_free(&track);
+}
+
+TEST(targets_are_told_where_they_are)
+{
+    static const double told[][10] = {{1, 3, 46.1, 11, 90, 15},
+                                      {255, 7, 46.2, 11.1, 200, 220, 4000, 3},
+                                      {0, 13, 46.05, 11.1, 180, 8, -9999, 0, 5, 12}};
+    struct nav_live *l = calloc(1, sizeof *l);
+    struct ear *ear = calloc(1, sizeof *ear);
+    assert_true(nav_live_add(l, told[0], 6));
+    assert_true(nav_live_add(l, told[1], 8));
+    assert_true(nav_live_add(l, told[2], 10));
+    send(l, 20, ear, compare);
+    print_message("# %u sets, within %.2f m\n", ear->live.count.sets, ear->worst_m);
+    assert_in_range(ear->live.count.sets, 20 + 20 + 7 - 2, 20 + 20 + 7 + 2);
+    assert_true(ear->worst_m < 0.5);
+    assert_int_equal(ear->live.count.torn + ear->live.count.refused, 0);
+    assert_int_equal(ear->live.count.removed, 1);
+    assert_int_equal(ear->live.live.count, 2);
+    assert_true(ear->live.live.target[255].has_height && !ear->live.live.target[1].has_height);
+    assert_int_equal(ear->live.live.target[255].kind, LM_LIVE_FIGHTER);
+    free(ear);
+    free(l);
+}
+
+static void listen(struct ear *ear, const struct nav_live *l)
+{
+    (void)ear;
+    (void)l;
+}
+
+TEST(all_256_are_told_once_a_second)
+{
+    struct nav_live *l = calloc(1, sizeof *l);
+    struct ear *ear = calloc(1, sizeof *ear);
+    for (int i = 0; i < NAV_LIVE_MAX; i++) {
+        const double told[] = {i, i % NAV_LIVE_KINDS, 46, 11, i, i, 100};
+        assert_true(nav_live_add(l, told, 7));
+    }
+    send(l, 10, ear, listen);
+    assert_int_equal(ear->live.live.count, NAV_LIVE_MAX);
+    assert_in_range(ear->live.count.sets, 10 * NAV_LIVE_MAX - 4, 10 * NAV_LIVE_MAX + 4);
+    assert_int_equal(ear->live.count.torn + ear->live.count.refused, 0);
+    free(ear);
+    free(l);
+}
+
+TEST(what_is_out_of_range_is_not_taken)
+{
+    static const double good[] = {1, 3, 46, 11, 90, 15, 100, 2, 3, 9};
+    static const struct {
+        int place;
+        double value;
+    } bad[] = {{0, 256},  {0, -1}, {0, 1.5},   {1, 17}, {2, 91}, {3, 181}, {4, 361},
+               {5, 1001}, {5, -1}, {6, 16001}, {7, 61}, {8, -1}, {9, 3}};
+    struct nav_live *l = calloc(1, sizeof *l);
+    for (size_t i = 0; i < sizeof bad / sizeof *bad; i++) {
+        double v[10];
+        memcpy(v, good, sizeof v);
+        v[bad[i].place] = bad[i].value;
+        assert_false(nav_live_add(l, v, 10));
+    }
+    assert_false(nav_live_add(l, good, 5));
+    assert_false(nav_live_add(l, good, -1));
+    assert_true(nav_live_add(l, good, 10));
+    assert_false(nav_live_add(l, good, 10)); /* the number is taken */
+    assert_int_equal(l->count, 1);
+    free(l);
+}
