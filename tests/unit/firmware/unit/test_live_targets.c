@@ -305,6 +305,47 @@ TEST(a_patch_displaces_and_smears_a_live_mover_as_one_of_the_image)
     tiny_map_close(&map);
 }
 
+/* ---- heights ---- */
+
+static double hill(void *ctx, const struct tiny_place *p)
+{
+    (void)ctx;
+    (void)p;
+    return 300;
+}
+
+TEST(a_live_target_stands_on_the_map_or_at_its_height_above_sea_level)
+{
+    struct tiny_spec spec = tiny_spec_at(46, 11);
+    spec.shift0 = 12;
+    spec.rows = spec.columns = 4;
+    spec.elevation_m = hill;
+    tiny_map_open(&map, &spec, SLOTS);
+    const struct lm_target_set set = {.live = &live};
+    const struct lm_target_query query = {.position = {hs_bam(46), hs_bam(11)},
+                                          .reach_m = 5000,
+                                          .time_us = 7 * S,
+                                          .tiles = &map.tiles};
+    const struct lm_target t = image_mover(46, 11, 0, 0);
+    static struct lm_target_candidates candidates;
+    for (int has_height = 0; has_height < 2; has_height++) {
+        tell(&t, 9, 7 * S);
+        live.target[9].has_height = has_height;
+        live.target[9].height_m_q6 = has_height ? 1234 * 64 : 0;
+        for (int turn = 0; turn < 2; turn++) { /* the first asks for the tile */
+            lm_target_candidates_select(&candidates, &set, &query);
+            lm_target_candidates_add_live(&candidates, &query);
+            tiny_map_read_tiles(&map);
+        }
+        assert_int_equal(candidates.count, 1);
+        /* The map's steps are finer than a sixteenth of a metre. */
+        const int32_t expected_m_q6 = (has_height ? 1234 : 300) * 64;
+        assert_in_range(candidates.candidate[0].elevation_m_q6, expected_m_q6 - 4,
+                        expected_m_q6 + 4);
+    }
+    tiny_map_close(&map);
+}
+
 /* ---- the unit ---- */
 
 /* The rig's bus, and live targets between its frames. */
