@@ -11,11 +11,14 @@
 #include <string.h>
 
 /* X band. None of it is measured: values to look at pictures with, to be learned or replaced.
- * Permittivity of moist soil about 6 - i, of rubber about 3 (usual handbook values). */
+ * Permittivity of moist soil about 6 - i, of rubber about 3 (usual handbook values). The ground's
+ * roughness is as high as the small-perturbation method holds, k s = 0.3 (Ulaby, Moore, Fung,
+ * volume II, 12-5), and its spectrum exponential, as bare soils mostly have it (Oh, Sarabandi,
+ * Ulaby, IEEE Trans. Geoscience and Remote Sensing 30, 1992). */
 static const struct reflect_material built_in[] = {
-    {"metal", 1, 1e7, 0.0002, 0.02, 0.9, 0.005, 0.03, 1},
-    {"ground", 6, 1, 0.0015, 0.02, 0.3, 0.02, 0.03, 1},
-    {"rubber", 3, 0.1, 0.001, 0.02, 0.2, 0.02, 0.03, 1},
+    {"metal", 1, 1e7, 0.0002, 0.02, 0.9, 0.005, 0.03, 1, REFLECT_GAUSSIAN},
+    {"ground", 6, 1, 0.0015, 0.02, 0.3, 0.02, 0.03, 1, REFLECT_EXPONENTIAL},
+    {"rubber", 3, 0.1, 0.001, 0.02, 0.2, 0.02, 0.03, 1, REFLECT_GAUSSIAN},
 };
 enum { BUILT_IN = sizeof built_in / sizeof built_in[0], FILE_MAX = 256 };
 
@@ -51,13 +54,29 @@ static const char *row_fault(const struct reflect_material *m)
     return NULL;
 }
 
+/* The last word may be missing: Gaussian, as files had it before. */
+static const char *read_spectrum(const char *word, struct reflect_material *m)
+{
+    for (int i = 0; i < REFLECT_SPECTRA; i++) {
+        if (strcmp(word, reflect_spectrum_names[i]) == 0) {
+            m->spectrum = (enum reflect_spectrum)i;
+            return NULL;
+        }
+    }
+    return "a spectrum is gaussian or exponential";
+}
+
 static const char *read_row(const char *line, struct reflect_material *m)
 {
-    char extra;
-    const int read = sscanf(line, "%31s %lf %lf %lf %lf %lf %lf %lf %lf %c", m->name,
+    char extra, word[16] = "gaussian";
+    const int read = sscanf(line, "%31s %lf %lf %lf %lf %lf %lf %lf %lf %15s %c", m->name,
                             &m->permittivity, &m->loss, &m->rms_height_m, &m->correlation_m,
-                            &m->specular, &m->roughness, &m->diffuse, &m->brilliance, &extra);
-    return read == 9 ? row_fault(m) : "expected a name and eight numbers";
+                            &m->specular, &m->roughness, &m->diffuse, &m->brilliance, word, &extra);
+    if (read != 9 && read != 10) {
+        return "expected a name, eight numbers and a spectrum";
+    }
+    const char *fault = read_spectrum(word, m);
+    return fault ? fault : row_fault(m);
 }
 
 static int read_rows(struct table *table, FILE *in, const char *path)
@@ -122,18 +141,20 @@ static void report_material(const struct reflect_material *m)
     hs_report_put("roughness", m->roughness);
     hs_report_put("diffuse", m->diffuse);
     hs_report_put("brilliance", m->brilliance);
+    hs_report_text("spectrum", reflect_spectrum_names[m->spectrum]);
     hs_report_close();
 }
 
 void materials_print(void)
 {
-    puts("# NAME PERMITTIVITY LOSS RMS_HEIGHT_M CORRELATION_M F_S F_R F_D F_B");
+    puts("# NAME PERMITTIVITY LOSS RMS_HEIGHT_M CORRELATION_M F_S F_R F_D F_B SPECTRUM");
     hs_report_array("materials");
     for (int i = 0; i < BUILT_IN; i++) {
         const struct reflect_material *m = &built_in[i];
         report_material(m);
-        printf("%s %g %g %g %g %g %g %g %g\n", m->name, m->permittivity, m->loss, m->rms_height_m,
-               m->correlation_m, m->specular, m->roughness, m->diffuse, m->brilliance);
+        printf("%s %g %g %g %g %g %g %g %g %s\n", m->name, m->permittivity, m->loss,
+               m->rms_height_m, m->correlation_m, m->specular, m->roughness, m->diffuse,
+               m->brilliance, reflect_spectrum_names[m->spectrum]);
     }
     hs_report_close();
 }

@@ -7,6 +7,8 @@ static const double pi = 3.14159265358979323846;
 const char *const reflect_kind_names[REFLECT_KINDS] = {"raysar", "fresnel-hh", "fresnel-vv",
                                                        "spm-hh", "spm-vv"};
 
+const char *const reflect_spectrum_names[REFLECT_SPECTRA] = {"gaussian", "exponential"};
+
 static double square(double x)
 {
     return x * x;
@@ -62,6 +64,13 @@ double reflect_cos_theta3(double theta1, double theta2, double theta4)
     return fmin(fmax(sines_cos_theta3(theta1, theta2, theta4) / sines, -1), 1);
 }
 
+double reflect_spectrum_at(const struct reflect_material *m, double kappa_squared)
+{
+    const double area = pi * square(m->rms_height_m * m->correlation_m);
+    const double turn = kappa_squared * square(m->correlation_m);
+    return m->spectrum == REFLECT_GAUSSIAN ? area * exp(-turn / 4) : 2 * area / pow(1 + turn, 1.5);
+}
+
 double reflect_spm_sigma0(const struct reflect_material *m, double wavelength_m, bool is_vv,
                           double theta1, double theta2, double theta4)
 {
@@ -74,8 +83,7 @@ double reflect_spm_sigma0(const struct reflect_material *m, double wavelength_m,
     const double kappa_squared =
         k * k *
         (square(sin(theta1)) + square(sin(theta2)) - 2 * sines_cos_theta3(theta1, theta2, theta4));
-    const double spectrum = pi * square(m->rms_height_m * m->correlation_m) *
-                            exp(-kappa_squared * square(m->correlation_m) / 4);
+    const double spectrum = reflect_spectrum_at(m, fmax(kappa_squared, 0));
     return 4 / pi * square(square(k) * cos(theta1) * cos(theta2) * cabs(beta)) * spectrum;
 }
 

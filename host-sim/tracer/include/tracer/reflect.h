@@ -13,14 +13,20 @@
 #include <stdbool.h>
 #include <stdint.h>
 
+/* Shape of the autocorrelation of heights: exp(-(r / l)^2) or exp(-r / l). At flat angles a
+ * Gaussian surface returns next to nothing; natural ground is nearer to exponential. */
+enum reflect_spectrum { REFLECT_GAUSSIAN, REFLECT_EXPONENTIAL, REFLECT_SPECTRA };
+extern const char *const reflect_spectrum_names[REFLECT_SPECTRA];
+
 /* A surface. The names of the last four are RaySAR's. */
 struct reflect_material {
     char name[TRACE_NAME_SIZE];
     double permittivity, loss;  /* relative permittivity: permittivity - i loss */
     double rms_height_m;        /* roughness: standard deviation of height */
-    double correlation_m;       /* and its correlation length; Gaussian */
+    double correlation_m;       /* and its correlation length */
     double specular, roughness; /* F_s 0..1, F_r > 0 */
     double diffuse, brilliance; /* F_d 0..1, F_b 0..1 */
+    enum reflect_spectrum spectrum;
 };
 
 /* ---- the formulas ---- */
@@ -44,8 +50,11 @@ double complex reflect_beta_vv(double complex permittivity, double theta1, doubl
 double reflect_cos_theta3(double theta1, double theta2, double theta4);
 
 /* Eq. (7) as cross section of a unit area: sigma0 = 4 pi R^2 |E|^2 / a = 4/pi k^4 cos^2 t1 cos^2 t2
- * |beta|^2 W, with W the transform of a Gaussian autocorrelation, pi s^2 l^2 exp(-(kappa l)^2 / 4).
- * For backscatter this is Ulaby's 4 k^4 s^2 l^2 cos^4 t |alpha|^2 exp(-(k l sin t)^2). */
+ * |beta|^2 W, with W the transform of the autocorrelation over the plane: pi s^2 l^2
+ * exp(-(kappa l)^2 / 4) of a Gaussian one, 2 pi s^2 l^2 / (1 + (kappa l)^2)^(3/2) of an
+ * exponential. For backscatter the Gaussian is Ulaby's 4 k^4 s^2 l^2 cos^4 t |alpha|^2 exp(-(k l
+ * sin t)^2). */
+double reflect_spectrum_at(const struct reflect_material *m, double kappa_squared);
 double reflect_spm_sigma0(const struct reflect_material *m, double wavelength_m, bool is_vv,
                           double theta1, double theta2, double theta4);
 

@@ -23,7 +23,8 @@ static struct reflect_law plain_law(void)
 {
     struct reflect_law law = {.kind = REFLECT_RAYSAR, .wavelength_m = TRACE_WAVELENGTH_M};
     for (int i = 0; i < TRACE_MATERIALS_MAX; i++) {
-        law.materials[i] = (struct reflect_material){"plain", 2, 0, 0, 0, 0.5, 1, 0.25, 0};
+        law.materials[i] =
+            (struct reflect_material){"plain", 2, 0, 0, 0, 0.5, 1, 0.25, 0, REFLECT_GAUSSIAN};
     }
     return law;
 }

@@ -64,7 +64,8 @@ TEST(way_out_and_way_back_may_be_exchanged)
     }
 }
 
-static const struct reflect_material soil = {"soil", 6, 1, 0.001, 0.01, 0.4, 0.02, 0.3, 1};
+static const struct reflect_material soil = {"soil", 6,    1,   0.001, 0.01,
+                                             0.4,    0.02, 0.3, 1,     REFLECT_GAUSSIAN};
 
 /* Ulaby's sigma0 of a Gaussian surface, 4 k^4 s^2 l^2 cos^4 t |alpha|^2 exp(-(k l sin t)^2). */
 TEST(small_perturbation_is_the_textbooks_in_backscatter)
@@ -80,6 +81,42 @@ TEST(small_perturbation_is_the_textbooks_in_backscatter)
         const double found = reflect_spm_sigma0(&soil, wavelength, true, rad(t), rad(t), 0);
         assert_true(fabs(found - expected) < 1e-9 * expected);
     }
+}
+
+/* By definition: the transform over the plane of the heights' autocorrelation, here as the integral
+ * of 2 pi r J0(kappa r) exp(-(r / l)^2) or exp(-r / l), by Simpson's rule. */
+TEST(a_spectrum_is_the_transform_of_its_autocorrelation)
+{
+    enum { STEPS = 200000 };
+    struct reflect_material m = soil;
+    for (int i = 0; i < REFLECT_SPECTRA; i++) {
+        m.spectrum = (enum reflect_spectrum)i;
+        for (double kappa = 0; kappa < 500; kappa += 60) {
+            const double step = 40 * m.correlation_m / STEPS;
+            double sum = 0;
+            for (int k = 0; k <= STEPS; k++) {
+                const double r = k * step, x = r / m.correlation_m;
+                const double weight = k == 0 || k == STEPS ? 1 : k % 2 ? 4 : 2;
+                sum += weight * r * j0(kappa * r) * exp(i == REFLECT_GAUSSIAN ? -x * x : -x);
+            }
+            const double expected = 2 * pi * m.rms_height_m * m.rms_height_m * sum * step / 3;
+            const double found = reflect_spectrum_at(&m, kappa * kappa);
+            assert_true(fabs(found - expected) < 1e-6 * reflect_spectrum_at(&m, 0));
+        }
+    }
+}
+
+/* By hand: the built-in ground at 75 degrees from the vertical. */
+TEST(exponential_ground_returns_something_at_flat_angles)
+{
+    struct reflect_material ground = {"ground", 6,    1,    0.0015, 0.02,
+                                      0.3,      0.02, 0.03, 1,      REFLECT_EXPONENTIAL};
+    const double t = rad(75);
+    const double flat_db = 10 * log10(reflect_spm_sigma0(&ground, 0.03123, true, t, t, 0));
+    ground.spectrum = REFLECT_GAUSSIAN;
+    const double gaussian_db = 10 * log10(reflect_spm_sigma0(&ground, 0.03123, true, t, t, 0));
+    print_message("# %.1f and %.1f dB\n", flat_db, gaussian_db);
+    assert_true(fabs(flat_db + 28.1) < 0.1 && fabs(gaussian_db + 69.9) < 0.1);
 }
 
 /* The azimuth is found again from the three angles of a record. */

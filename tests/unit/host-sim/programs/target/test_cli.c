@@ -76,6 +76,26 @@ TEST(a_model_in_the_wrong_place_or_scale_is_doubted_with_its_sizes)
     }
 }
 
+/* By small perturbation too the ground beside the tank is brighter than its shadow. */
+TEST(rough_ground_has_a_shadow)
+{
+    assert_int_equal(run("render --model tank --cells 160 --law spm-vv --azimuth 90 --csv spm.csv"),
+                     0);
+    assert_int_equal(
+        shell("awk -F, '{ if (NR < 6) for (i = 1; i <= NF; i++) { far += $i; n++ } "
+              "r[NR] = 0; for (i = 36; i <= 44; i++) r[NR] += $i / 9 } "
+              "END { least = 1e9; for (k = 8; k < 40; k++) if (r[k] < least) least = r[k]; "
+              "print far / n, least; exit !(far / n > 1e-3 && least < 0.3 * far / n) }' spm.csv"),
+        0);
+    assert_int_equal(run("materials > materials.txt"), 0);
+    assert_int_equal(shell("grep -q '^ground .* exponential$' materials.txt"), 0);
+    assert_int_equal(run("render --model tank --materials materials.txt --csv again.csv"), 0);
+    assert_int_equal(shell("sed -i 's/exponential/fractal/' materials.txt"), 0);
+    assert_int_equal(run("render --model tank --materials materials.txt --csv again.csv 2>errors"),
+                     1);
+    assert_int_equal(shell("grep -q 'materials.txt line 3: a spectrum is' errors"), 0);
+}
+
 TEST(a_resolution_that_the_cells_cannot_have_is_refused)
 {
     assert_int_equal(run("render --model slicy --resolution 0.11 --csv fine.csv 2> errors"), 1);
