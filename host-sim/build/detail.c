@@ -355,7 +355,9 @@ static int lay_out(struct build_detail *d, const char *path)
     for (uint32_t first = 0, end; first < d->count; first = end) {
         end = end_of_tile(d, first);
         if (end - first > LM_DETAIL_ITEMS_MAX) {
-            return hs_error(path, "leave some out, or build with smaller cells",
+            return hs_error(path,
+                            "give `build` a smaller --cell, down to half of this one, or leave "
+                            "some out",
                             "has %u items in the tile of row %u, column %u; it holds %d",
                             end - first, d->items[first].row, d->items[first].column,
                             LM_DETAIL_ITEMS_MAX);

@@ -23,8 +23,11 @@ struct sampler {
     size_t cap;
     struct hs_rng rng;
     uint8_t *ignored; /* owned; NULL, or one bit a pixel of the image, row by row */
+    uint16_t *claims; /* owned; of a pixel of the image a bit a class whose polygons claim it */
     size_t width;
 };
+
+_Static_assert(DB_CLASS_MAX <= 16, "a bit a class");
 
 static bool is_ignored(const struct sampler *s, int x, int y)
 {
@@ -38,6 +41,16 @@ static void sampler_free(struct sampler *s)
         free(s->classes[i].items);
     }
     free(s->ignored);
+    free(s->claims);
+}
+
+/* Whether polygons of the class have had the pixel before: it counts once. */
+static bool is_claimed(struct sampler *s, int x, int y, int class_index)
+{
+    uint16_t *claims = &s->claims[(size_t)y * s->width + (size_t)x];
+    const bool result = *claims >> class_index & 1;
+    *claims |= (uint16_t)(1 << class_index);
+    return result;
 }
 
 static int sampler_add(struct sampler *s, struct db_exemplar item)
@@ -197,7 +210,9 @@ static int take_span(void *context, int y, int x_begin, int x_end)
     sink->pixels += (uint64_t)(x_end - x_begin);
     for (int x = x_begin; x < x_end; x++) {
         const struct db_exemplar item = {x, y, sink->region, sink->class_index, DB_PART_TRAIN};
-        if (!is_ignored(sink->sampler, x, y) && sampler_add(sink->sampler, item) != 0) {
+        if (!is_ignored(sink->sampler, x, y) &&
+            !is_claimed(sink->sampler, x, y, sink->class_index) &&
+            sampler_add(sink->sampler, item) != 0) {
             return -1;
         }
     }
@@ -227,6 +242,11 @@ static int mark_ignored(struct sampler *s, const struct db_polygons *polygons,
                         const struct db_label_map *map, const struct db_grid *grid)
 {
     s->width = (size_t)grid->width;
+    /* Pages that no polygon touches cost no memory. */
+    s->claims = calloc(s->width * (size_t)grid->height, sizeof *s->claims);
+    if (!s->claims) {
+        return -1;
+    }
     for (size_t i = 0; i < polygons->count; i++) {
         const struct db_polygon *p = &polygons->items[i];
         if (!db_label_map_is_ignored(map, p->label)) {

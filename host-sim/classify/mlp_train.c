@@ -227,6 +227,7 @@ static int trainer_init(struct trainer *t)
     t->noise = t->options->noise;
     t->decay =
         isnan(t->options->decay) ? db_default_decay(size, t->training->count) : t->options->decay;
+    t->report->decay = t->decay;
     t->best_score = t->mark_score = -1;
     t->best_rms = t->mark_rms = INFINITY;
     t->redraws_left = t->options->redraws;

@@ -44,6 +44,12 @@ static char **names_of_table(GDALRasterBandH band)
 /* The caller frees them; NULL when the band names nothing. */
 static char **names_of(GDALRasterBandH band)
 {
+    /* GDAL's GeoTIFF driver looks into the file beside it only when it is asked for the place. */
+    const GDALDatasetH file = GDALGetBandDataset(band);
+    double place[6];
+    if (file) {
+        GDALGetGeoTransform(file, place);
+    }
     char **names = GDALGetRasterCategoryNames(band);
     if (names) {
         return CSLDuplicate(names);

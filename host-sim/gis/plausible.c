@@ -200,6 +200,32 @@ int db_plausible_reflectivity(GDALRasterBandH band, const char *path, bool is_tr
  * beyond both is left for other bands, polarisations and calibrations (UNSOURCED). */
 static const double least_mean_db = -40, greatest_mean_db = 10;
 
+static int doubt_mean(double mean_db, const char *unit, const char *path, bool is_trusted)
+{
+    return mean_db >= least_mean_db && mean_db <= greatest_mean_db
+               ? 0
+               : hs_doubt(is_trusted, path, "give calibrated gamma0 or sigma0, and its unit",
+                          "has a mean of %.1f dB as %s, and ground returns %g to %g dB", mean_db,
+                          unit, least_mean_db, greatest_mean_db);
+}
+
+/* Of the powers, as those of linear imagery: a few bright places must not hide in a mean of dB. */
+static int judge_decibels(const struct db_band_sample *s, const char *path, bool is_trusted)
+{
+    double sum = 0;
+    bool is_negative = false;
+    for (size_t i = 0; i < s->count; i++) {
+        sum += pow(10, s->values[i] / 10);
+        is_negative = is_negative || s->values[i] < 0;
+    }
+    if (s->count > 0 && !is_negative) {
+        return hs_doubt(is_trusted, path, "is it --radar-unit linear?",
+                        "holds nothing below 0, as linear power does and dB of ground do not");
+    }
+    return s->count == 0 ? 0
+                         : doubt_mean(10 * log10(sum / (double)s->count), "dB", path, is_trusted);
+}
+
 static int judge_powers(const struct db_band_sample *s, const char *path, bool is_trusted)
 {
     const char *remedy = "give calibrated gamma0 or sigma0";
@@ -215,11 +241,7 @@ static int judge_powers(const struct db_band_sample *s, const char *path, bool i
                         "holds whole numbers alone, as a class raster or raw numbers do");
     }
     const double mean_db = s->count > 0 ? 10 * log10(sum / (double)s->count) : least_mean_db;
-    return mean_db >= least_mean_db && mean_db <= greatest_mean_db
-               ? 0
-               : hs_doubt(is_trusted, path, remedy,
-                          "has a mean of %.1f dB as linear power, and ground returns %g to %g dB",
-                          mean_db, least_mean_db, greatest_mean_db);
+    return doubt_mean(mean_db, "linear power", path, is_trusted);
 }
 
 static int doubt_unit(GDALRasterBandH band, const char *path, bool is_trusted)
@@ -239,7 +261,8 @@ int db_plausible_radar(GDALRasterBandH band, const char *path, bool is_linear, b
         doubt_unit(band, path, is_trusted) != 0 || db_band_sample(&s, band, path, 1) != 0) {
         return -1;
     }
-    const int result = is_linear ? judge_powers(&s, path, is_trusted) : 0;
+    const int result =
+        is_linear ? judge_powers(&s, path, is_trusted) : judge_decibels(&s, path, is_trusted);
     db_band_sample_free(&s);
     return result;
 }

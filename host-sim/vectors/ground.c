@@ -98,6 +98,23 @@ static int take_pixels(struct vector_map *map, const int32_t *pixels, const char
     return 0;
 }
 
+/* A ground that lies elsewhere would leave all to the vectors without a word. */
+static int check_cover(const int32_t *pixels, size_t cells, const char *path)
+{
+    size_t covered = 0;
+    for (size_t i = 0; i < cells; i++) {
+        covered += pixels[i] != NOT_COVERED;
+    }
+    if (covered == 0) {
+        return hs_error(path, "give the ground of the vectors' area, or another --area",
+                        "lies outside the area of the vectors");
+    }
+    return covered == cells
+               ? 0
+               : hs_warn(path, "what it leaves out has the vectors alone",
+                         "covers %.1f %% of the area", 100 * (double)covered / (double)cells);
+}
+
 /* Every pixel is looked at: what is unknown is refused before the work. */
 static int read_meaning(struct meaning *m, GDALDatasetH ground, const char *path,
                         const struct db_class_table *table)
@@ -123,6 +140,9 @@ static int fill(struct vector_map *map, GDALDatasetH ground, const char *path,
         pixels[i] = NOT_COVERED;
     }
     int result = warp(map, ground, path, pixels);
+    if (result == 0) {
+        result = check_cover(pixels, cells, path);
+    }
     if (result == 0) {
         result = take_pixels(map, pixels, path, meaning);
     }

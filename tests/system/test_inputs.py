@@ -747,6 +747,20 @@ wrong_radar("raw optical numbers", "linear", digital_numbers)
 wrong_radar("powers 50 dB too weak", "linear", lambda: powers("weak.tif", 1e-5))
 
 
+def dark_radar(unit, name, make):
+    @row(name, "reflect", "refused")
+    def is_doubted():
+        words = REFLECT + ["--out", "no-radar.tif", "--method", "radar", "--radar", make(), "--radar-unit", unit]
+        done = kept_away("no-radar.tif", lambda: db(*words))
+        assert db(*words, "--trust-inputs").code == 0 or "is above 0" in db(*words, "--trust-inputs").err
+        return done
+
+
+dark_radar("db", "radar imagery in dB with a mean of -70 dB", lambda: raster("dark.tif", [radar_db() - 58], nodata=-9999))
+dark_radar("db", "radar imagery in dB with a mean above 20 dB", lambda: raster("light.tif", [radar_db() * 4 + 60], nodata=-9999))
+dark_radar("db", "linear power with empty borders as dB", lambda: raster("border.tif", [numpy.where(numpy.arange(SIDE) < SIDE / 4, 0, 10 ** (radar_db() / 10))]))
+
+
 @row("radar imagery in linear power", "reflect", "done")
 def radar_linear():
     powers("power.tif", 1)
@@ -758,6 +772,41 @@ def radar_hole():
     plane = radar_db()
     plane[:9, :] = -9999
     return db(*radar("hole.tif", plane), "--radar-unit", "db")
+
+
+# ---- The ground under vectors.
+
+def vectors_on(at):
+    ground = raster("ground.tif", [classes_plane()], gdal.GDT_Byte, nodata=255, names=CLASSES)
+    with open("one.rules", "w") as file:
+        file.write("[house]\nfrom = area\nwhere = building=*\nclass = structure\nheight = 9\n")
+    source = ogr.GetDriverByName("GPKG").CreateDataSource("house.gpkg")
+    layer = source.CreateLayer("houses", crs("EPSG:32632"), ogr.wkbPolygon)
+    layer.CreateField(ogr.FieldDefn("building", ogr.OFTString))
+    feature = ogr.Feature(layer.GetLayerDefn())
+    feature.SetField("building", "yes")
+    (x, y) = at
+    ring = "%f %f,%f %f,%f %f,%f %f,%f %f" % (x, y, x + 200, y, x + 200, y - 200, x, y - 200, x, y)
+    feature.SetGeometry(ogr.CreateGeometryFromWkt("POLYGON((%s))" % ring))
+    layer.CreateFeature(feature)
+    source = None
+    return db("vectors", "--vectors", "house.gpkg", "--rules", "one.rules", "--classes", "heaton6.classes", "--cell", "10", "--ground", ground,
+              "--out", "houses.tif")
+
+
+@row("ground elsewhere than the vectors", "vectors", "refused")
+def ground_elsewhere():
+    return kept_away("houses.tif", lambda: vectors_on((520000.0, 4790000.0)))
+
+
+@row("ground under a part of the vectors", "vectors", "warned")
+def ground_in_part():
+    return vectors_on((499900.0, 4799900.0))
+
+
+@row("ground under all vectors", "vectors", "done")
+def ground_under_all():
+    return vectors_on((500100.0, 4799900.0))
 
 
 # ---- Sensors.

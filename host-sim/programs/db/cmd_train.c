@@ -398,7 +398,7 @@ static int learn(struct work *w)
                     (int)o->context, &options, w->reports);
 }
 
-static void report_network(const struct db_mlp *mlp)
+static void report_network(const struct work *w, const struct db_mlp *mlp)
 {
     hs_report_object("network");
     hs_report_put("inputs", mlp->input_count);
@@ -408,6 +408,7 @@ static void report_network(const struct db_mlp *mlp)
     }
     hs_report_close();
     hs_report_put("outputs", mlp->output_count);
+    hs_report_put("decay", w->reports[0].decay);
     hs_report_close();
 }
 
@@ -433,7 +434,7 @@ static void print_training(const struct work *w)
     for (int l = 0; l < mlp->layer_count; l++) {
         printf("%d ", mlp->hidden[l]);
     }
-    printf("hidden, %d outputs\n", mlp->output_count);
+    printf("hidden, %d outputs; decay of weights %g\n", mlp->output_count, w->reports[0].decay);
     long wanted;
     const int taken = db_mlp_default_hidden(mlp->input_count, mlp->output_count, &wanted);
     if (w->choices.layer_count == 0 && taken < wanted) {
@@ -442,7 +443,7 @@ static void print_training(const struct work *w)
             "measured (--hidden).\n",
             wanted, taken);
     }
-    report_network(mlp);
+    report_network(w, mlp);
     hs_report_array("members");
     for (int m = 0; m < w->net.member_count; m++) {
         const struct db_train_report *r = &w->reports[m];

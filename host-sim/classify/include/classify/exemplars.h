@@ -34,7 +34,7 @@ struct db_exemplars {
     size_t count;
     struct db_region *regions; /* owned */
     size_t region_count;
-    uint64_t available[DB_CLASS_MAX]; /* pixels of each class before the cap */
+    uint64_t available[DB_CLASS_MAX]; /* pixels of each class before the cap, each once */
     uint64_t conflicting;             /* pixels left out because two classes claim them */
 };
 

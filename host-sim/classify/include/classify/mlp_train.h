@@ -59,6 +59,7 @@ struct db_train_report {
     enum db_train_stop stop;
     struct db_train_event events[DB_EVENTS_MAX]; /* local minima met, and what was done */
     int event_count;
+    double decay; /* of the weights, also where it was left to db_default_decay */
 };
 
 /* Train `net` from its present weights; on return it holds the best met: by validation recognition

@@ -231,7 +231,8 @@ def db_train():
     assert [(e["name"], e["pixels"], e["to_train_on"], e["held_out"]) for e in r["exemplars"]] == \
         rows(r"^(\S+) +(\d+) pixels, +(\d+) to train on, +(\d+) held out", text)
     n = r["network"]
-    assert [n["inputs"], *n["hidden"], n["outputs"]] == find(r"^network: (\d+) inputs, (\d+) hidden, (\d+) outputs", text)
+    assert [n["inputs"], *n["hidden"], n["outputs"], n["decay"]] == find(
+        r"^network: (\d+) inputs, (\d+) hidden, (\d+) outputs; decay of weights ([0-9.e-]+)", text)
     shown = rows(r"^trained (\d+) epochs, (.*); kept epoch (\d+): RMS error ([\d.]+), recognition ([\d.]+) %", text)
     assert [(m["epochs"], m["stop"], m["kept_epoch"]) for m in r["members"]] == [row[:3] for row in shown] and len(shown) == 2
     assert all(near(m["rms_error"], row[3], 1e-4) and near(100 * m["recognition"], row[4], 0.1)
