@@ -1008,6 +1008,21 @@ def misspelt_label():
     return db(*["misspelt.geojson" if word == "fields.geojson" else word for word in TRAIN], "--net", "misspelt.net")
 
 
+@row("every polygon twice", "train", "warned")
+def polygons_twice():
+    with open("fields.geojson") as file:
+        twice = re.sub(r'(?s)("features": \[)(.*)(\n\])', r"\1\2,\2\3", file.read())
+    with open("twice.geojson", "w") as file:
+        file.write(twice)
+    counts = []
+    for name in ("fields.geojson", "twice.geojson"):
+        done = db(*[name if word == "fields.geojson" else word for word in TRAIN], "--net", "twice.net")
+        counts.append(re.findall(r"(?m)^(\w+) +(\d+) pixels", done.out))
+    assert twice.count("POLYGON".title()) == 18 and len(counts[0]) == 3 and counts[0] == counts[1], counts
+    assert "decay of weights 0" in done.out, done.out
+    return done
+
+
 @row("image of one band; classes without exemplars", "train", "warned")
 def one_band():
     raster("band.tif", image_planes()[:1], gdal.GDT_Byte)

@@ -90,6 +90,8 @@ check 'and what has been begun' offers_only landmass-db seg -- segment
 check 'and options of a command' offers landmass-db build --c -- --classes --class-raster --cell
 check 'and options of a program without commands' offers_only landmass-nav --posi -- --position
 check 'and words of a choice' offers landmass-nav --position '' -- double float long
+check 'and words of a text' offers landmass-db picture --plane '' -- reflectivity class elevation height shade
+check 'and words beside a place holder' offers landmass-db train --priors e -- exemplars equal
 : >"$work/terrain-1.tif"
 check 'and files' offers_only landmass-db build --terrain "$work/terr" -- "$work/terrain-1.tif"
 check 'and folders' offers_only landmass-scene --out "$work/sce" -- "$work/scene"
