@@ -36,16 +36,16 @@ awk -v place="$town" 'BEGIN { split(place, at, " "); printf "%.6f,%.6f,60,2000,7
 "$bin/landmass-nav" --straight "$(cat "$work/start")" --seconds 4 --out "$work/plain.log" >"$out" 2>"$last_error"
 
 # The table of canas17, as text with other identifiers; and what does the same to a log.
-"$bin/landmass-bus" table >"$work/table.md"
+"$bin/landmass-bus" table >"$work/rows"
 {
     printf 'profile moved\nframing canaerospace\n'
     awk -F ' *[|] *' -v shift=$shift '$2 ~ /^[0-9]+$/ && $2 < 1500 {
         gsub(/, /, ",", $6)
         printf "item \"%s\" field=%s id=%d types=%s per-unit=%d range=%s period=%s stale=%s dead=%s priority=%s\n",
             $4, $5, $2 + shift, $6, ($6 ~ /LONG/ ? 10000000 : 1), $8, $10, $11, $12, $13
-    }' "$work/table.md"
+    }' "$work/rows"
 } >"$work/moved.bus"
-awk -F ' *[|] *' -v shift=$shift '$2 ~ /^[0-9]+$/ { printf "s/ %s#/ %X#/;t\n", $3, $2 + shift }' "$work/table.md" >"$work/move.sed"
+awk -F ' *[|] *' -v shift=$shift '$2 ~ /^[0-9]+$/ { printf "s/ %s#/ %X#/;t\n", $3, $2 + shift }' "$work/rows" >"$work/move.sed"
 sed -f "$work/move.sed" "$work/plain.log" >"$work/moved.log"
 
 image plain

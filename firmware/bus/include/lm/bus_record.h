@@ -1,4 +1,4 @@
-/* Bus record: a bus table as bytes, in an image's section BUS. docs/FORMATS.md, 1.14, describes
+/* Bus record: a bus table as bytes, in an image's section BUS. docs/FORMATS.md, 1.13, describes
  * every byte; nothing of it depends on a compiler. A field is named by its word, so that a record
  * outlives the numbers of enum lm_bus_field.
  *

@@ -155,7 +155,7 @@ TEST(fast_packets_are_joined_as_canboat_joins_them)
     assert_int_equal(joined[6], 1);
 }
 
-/* 106 frames are 14 messages (NOTE.md of the data set), of whatever group. */
+/* 106 frames are 14 messages, as the data set counts them. */
 TEST(every_message_of_a_gateway_is_whole)
 {
     FILE *in = open_data("actisense-522.candump.log");
