@@ -96,9 +96,9 @@ static bool read_type(const char *text, struct dis_rule *rule)
 
 static bool find_kind(const char *name, uint8_t *kind)
 {
-    for (uint8_t i = 0; i < DIS_TARGET_KINDS; i++) {
+    for (int i = 0; i < DIS_TARGET_KINDS; i++) {
         if (strcmp(names[i], name) == 0) {
-            *kind = i;
+            *kind = (uint8_t)i;
             return true;
         }
     }
