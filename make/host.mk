@@ -16,9 +16,9 @@ HOST_HEADERS_fixed      := $(INC_fixed)
 HOST_HEADERS_firmware   := $(call ROOM_HEADERS,$(ROOMS))
 HOST_HEADERS_firmware.h := $(HOST_HEADERS_firmware)
 HOST_HEADERS_drivers    := -Idrivers/include
-HOST_HEADERS_bench      := -Ibsp/bench-linux
+HOST_HEADERS_bench      := -Ibsp/bench-linux -Ibsp/record
 LIB_bench := $(O)/libbench.a
-$(LIB_bench): $(call objs,$(wildcard bsp/bench-linux/*.c))
+$(LIB_bench): $(call objs,$(wildcard bsp/bench-linux/*.c bsp/record/*.c))
 
 # The libraries $(1) and all below them, in the order of linking.
 host_needs    = $(filter $(1) $(foreach l,$(1),$(HOST_NEEDS_$l)),$(HOST_LIBS))

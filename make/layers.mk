@@ -10,7 +10,7 @@ INC_fixed    := -Ifixed/include
 INC_room      = $(INC_fixed) $(call ROOM_HEADERS,$(1) $(SEES_$(1)))
 INC_firmware := $(INC_fixed) $(call ROOM_HEADERS,$(ROOMS))
 INC_drivers  := $(INC_fixed) $(call ROOM_HEADERS,$(SEES_drivers)) -Idrivers/include
-INC_bsp      := $(INC_firmware) -Idrivers/include -Ibsp/$(BOARD)
+INC_bsp      := $(INC_firmware) -Idrivers/include -Ibsp/$(BOARD) -Ibsp/record
 INC_host      = $(INC_bsp)
 
 CFLAGS_fixed   = $(CSTD) $(WARN) $(OPT) $(FREESTANDING) $(INC_fixed)

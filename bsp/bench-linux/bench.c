@@ -29,7 +29,6 @@ static int present(void *ctx, const struct lm_damage *changed)
 static int lend_memory(struct bench *b)
 {
     const size_t pixels = (size_t)b->display.width_px * b->display.height_px;
-    b->board.tile_pool_bytes = BENCH_TILE_SLOTS * sizeof(struct lm_tile);
     b->board.tile_pool = malloc(b->board.tile_pool_bytes);
     b->board.plane = malloc(pixels);
     bool has_buffers = true;
@@ -56,6 +55,36 @@ static void report_refusal(struct bench *b, const struct lm_radar *radar, int st
                      ? "the glass must have 256..1024 pixels each way"
                      : "out of memory: the coarsest level of the database has too many tiles");
     }
+}
+
+/* Whether the recording that is to be replayed is of this image, table and firmware. */
+static bool agrees(struct bench *b, const struct bench_scene *scene)
+{
+    if (!scene->replay || scene->is_any_replayed) {
+        return true;
+    }
+    struct record_head mine;
+    record_describe(&mine, &b->board, 0);
+    const char *difference = replay_difference(scene->replay, &mine);
+    if (difference) {
+        snprintf(b->error, sizeof b->error, "the recording was made with %s", difference);
+    }
+    return difference == NULL;
+}
+
+/* The recorder or the recording stands between the ports and the unit. */
+static int start_unit(struct bench *b, const struct bench_scene *scene)
+{
+    if (scene->replay && replay_wrap(scene->replay, &b->board) != 0) {
+        return LM_ERR_NO_MEMORY;
+    }
+    if (lend_memory(b) != 0) {
+        return LM_ERR_NO_MEMORY;
+    }
+    if (scene->recorder) {
+        record_begin(scene->recorder, scene->sink, &b->board, 0, BENCH_CHECK_EVERY);
+    }
+    return lm_unit_init(b->unit, &b->board);
 }
 
 int bench_open(struct bench *b, const struct bench_scene *scene, const struct bench_glass *glass,
@@ -85,12 +114,17 @@ int bench_open(struct bench *b, const struct bench_scene *scene, const struct be
                                  .hardware_revision = 1,
                                  .controls = controls,
                                  .display = &b->display,
+                                 .tile_pool_bytes = BENCH_TILE_SLOTS * sizeof(struct lm_tile),
                                  .glass_step_px = LM_GLASS_STEP_PX,
                                  .noise_seed = noise_seed,
                                  .options = glass->options,
                                  .flash_poll_limit = 1000};
     memcpy(b->board.tables, bus->tables, sizeof b->board.tables);
-    const int status = lend_memory(b) == 0 ? lm_unit_init(b->unit, &b->board) : LM_ERR_NO_MEMORY;
+    if (!agrees(b, scene)) {
+        drv_flash_file_close(&b->flash);
+        return -1;
+    }
+    const int status = start_unit(b, scene);
     if (status != LM_OK) {
         const struct lm_radar *const radar = b->board.radar;
         bench_close(b);

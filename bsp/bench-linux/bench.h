@@ -5,6 +5,8 @@
 
 #include "drv/flash_file.h"
 #include "lm/unit.h"
+#include "record.h"
+#include "replay.h"
 
 /* As many buffers as the ZCU102 has, so that the same frames are shown. */
 enum { BENCH_TILE_SLOTS = 384, BENCH_BUFFERS = 2 };
@@ -33,11 +35,17 @@ struct bench_bus {
     bool obeys_controls;      /* of the bus: lm/canas_control.h */
 };
 
-/* What the unit looks at, and with. */
+/* What the unit looks at, and with. All but the database may be NULL. */
 struct bench_scene {
-    const char *database;         /* a file */
-    const struct lm_radar *radar; /* borrowed; NULL: the image's, or the built-in one */
+    const char *database;           /* a file */
+    const struct lm_radar *radar;   /* borrowed; NULL: the image's, or the built-in one */
+    struct recorder *recorder;      /* borrowed: it records the flight into `sink` */
+    const struct record_sink *sink; /* borrowed for the call */
+    struct replay *replay;          /* borrowed, open: the ports and settings are the recording's */
+    bool is_any_replayed;           /* what differs from the recording is no error */
 };
+
+enum { BENCH_CHECK_EVERY = 10 }; /* pictures for each checksum in a recording */
 
 /* Display of the unit. */
 struct bench_glass {

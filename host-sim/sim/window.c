@@ -8,6 +8,7 @@
 struct window {
     struct bezel bezel;
     struct hands *hands;
+    struct window_player *player; /* NULL: the unit is operated */
     SDL_Window *window;
     SDL_Renderer *renderer;
     SDL_Texture *texture;
@@ -23,7 +24,13 @@ const char window_keys_help[] =
     "  mouse              the buttons of the bezel\n"
     "  Escape             ends\n";
 
-enum { KNOB_STEP = 100 };
+const char window_player_help[] =
+    "  Space              stands still, or goes on\n"
+    "  left, right        ten seconds back, forward\n"
+    "  up, down           twice, half as fast\n"
+    "  Escape             ends\n";
+
+enum { KNOB_STEP = 100, JUMP_S = 10, SPEED_MOST = 64 };
 
 /* The button of a key, or 0. */
 static int32_t button_of_key(SDL_Keycode key)
@@ -115,8 +122,48 @@ static void take_mouse(struct window *w, const SDL_MouseButtonEvent *event)
     }
 }
 
+static void take_player_key(struct window_player *p, SDL_Keycode key)
+{
+    switch (key) {
+    case SDLK_SPACE:
+        p->is_paused = !p->is_paused;
+        break;
+    case SDLK_RIGHT:
+        p->jump_s += JUMP_S;
+        break;
+    case SDLK_LEFT:
+        p->jump_s -= JUMP_S;
+        break;
+    case SDLK_UP:
+        p->speed = p->speed < SPEED_MOST ? p->speed * 2 : p->speed;
+        break;
+    case SDLK_DOWN:
+        p->speed = p->speed > 1.0 / SPEED_MOST ? p->speed / 2 : p->speed;
+        break;
+    default:
+        break;
+    }
+}
+
+static bool take_player_event(struct window_player *p, const SDL_Event *event)
+{
+    if (event->type == SDL_KEYDOWN) {
+        take_player_key(p, event->key.keysym.sym);
+    }
+    return event->type != SDL_QUIT &&
+           (event->type != SDL_KEYDOWN || event->key.keysym.sym != SDLK_ESCAPE);
+}
+
+void window_watch(struct window *w, struct window_player *player)
+{
+    w->player = player;
+}
+
 static bool take_event(struct window *w, const SDL_Event *event)
 {
+    if (w->player) {
+        return take_player_event(w->player, event);
+    }
     switch (event->type) {
     case SDL_QUIT:
         return false;

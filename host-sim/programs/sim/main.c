@@ -43,9 +43,14 @@ struct sim {
     struct lm_can can_2;
     struct drv_can_socket socket;
     struct lm_can can;
-    struct hs_atomic_file sent; /* of --bus-out */
-    struct lm_can heard;        /* the bus behind it */
-    uint64_t now_us;            /* of the step */
+    struct hs_atomic_file sent;      /* of --bus-out */
+    struct lm_can heard;             /* the bus behind it */
+    struct hs_atomic_file recording; /* of --record */
+    struct recorder recorder;
+    struct replay replay;
+    struct window_player player;
+    uint64_t now_us; /* of the step */
+    struct timespec slept;
     struct hands hands;
     struct bezel bezel;
     uint32_t *bezel_pixels; /* owned; NULL when no bezel is asked for */
@@ -229,8 +234,17 @@ static int step(struct sim *s, uint64_t now_us)
     }
     const uint32_t before = s->bench.pictures;
     s->now_us = now_us;
+    if (s->options.record) {
+        record_step(&s->recorder, now_us);
+    }
     lm_unit_step(s->bench.unit, now_us);
     return s->bench.pictures != before ? serve_picture(s) : 0;
+}
+
+static void put_line(void *ctx, const char *line, size_t bytes)
+{
+    const struct sim *s = ctx;
+    (void)fwrite(line, 1, bytes, s->recording.stream); /* commit tells */
 }
 
 static int fly(struct sim *s)
@@ -255,6 +269,141 @@ static int fly(struct sim *s)
     }
     hs_progress_end(&progress);
     return status < 0 ? -1 : 0;
+}
+
+/* One step of the recording. 2 at its end; otherwise as serve_picture. */
+static int step_again(struct sim *s, uint64_t from_us)
+{
+    struct replay *p = &s->replay;
+    const uint32_t before = p->pictures;
+    if (!replay_step(p, &s->now_us)) {
+        return 2;
+    }
+    lm_unit_step(s->bench.unit, s->now_us);
+    s->bench.pictures = p->pictures;
+    s->bench.glass = p->shown[p->pictures % REPLAY_BUFFERS];
+    return p->pictures != before && s->now_us >= from_us ? serve_picture(s) : 0;
+}
+
+/* Open the recording, and a unit for it. */
+static int open_again(struct sim *s, const struct bench_bus *bus)
+{
+    const struct options *o = &s->options;
+    if (replay_open(&s->replay, o->replay) != 0) {
+        return hs_error(o->replay, "landmass-sim --record and the panel write recordings", "%s",
+                        s->replay.error);
+    }
+    const struct bench_glass glass = {(uint16_t)s->replay.head.width_px,
+                                      (uint16_t)s->replay.head.height_px, o->glass};
+    const struct bench_scene scene = {.database = o->database,
+                                      .radar = o->radar ? &s->radar : NULL,
+                                      .replay = &s->replay,
+                                      .is_any_replayed = o->is_any_replayed};
+    if (bench_open(&s->bench, &scene, &glass, 0, bus, &s->hands.port) != 0) {
+        return hs_error(o->replay,
+                        "name the image, --profile, --bus-table and --radar of the recording; "
+                        "--replay-anyway shows it with these",
+                        "%s", s->bench.error);
+    }
+    return 0;
+}
+
+/* Begin again, for a jump back. */
+static int rewind_flight(struct sim *s, const struct bench_bus *bus)
+{
+    replay_close(&s->replay);
+    bench_close(&s->bench);
+    return open_again(s, bus);
+}
+
+/* Stand still as long as the user wants, and hold his pace otherwise. Returns 1 when he ends it. */
+static int keep_pace(struct sim *s, struct timespec *due, uint64_t step_us)
+{
+    struct window_player *p = &s->player;
+    clock_gettime(CLOCK_MONOTONIC, &s->slept);
+    if (due->tv_sec < s->slept.tv_sec - 1) {
+        *due = s->slept; /* after a jump or a pause */
+    }
+    const uint64_t us = (uint64_t)((double)step_us / p->speed) + (uint64_t)due->tv_nsec / 1000;
+    due->tv_sec += (time_t)(us / 1000000);
+    due->tv_nsec = (long)(us % 1000000) * 1000;
+    while (clock_nanosleep(CLOCK_MONOTONIC, TIMER_ABSTIME, due, NULL) == EINTR) {
+    }
+    while (p->is_paused && p->jump_s == 0) {
+        const struct timespec rest = {.tv_nsec = 20000000};
+        nanosleep(&rest, NULL);
+        if (!window_poll(s->window)) {
+            return 1;
+        }
+    }
+    return 0;
+}
+
+/* Where to show from, after the user has jumped. */
+static int jump(struct sim *s, const struct bench_bus *bus, uint64_t *from_us)
+{
+    const int64_t to_us = (int64_t)s->now_us + (int64_t)s->player.jump_s * 1000000;
+    s->player.jump_s = 0;
+    *from_us = to_us > 0 ? (uint64_t)to_us : 0;
+    return *from_us < s->now_us ? rewind_flight(s, bus) : 0;
+}
+
+static int fly_again(struct sim *s, const struct bench_bus *bus)
+{
+    const struct options *o = &s->options;
+    uint64_t from_us = (uint64_t)llround(o->from_s * 1e6);
+    const uint64_t end_us =
+        o->seconds > 0 ? from_us + (uint64_t)llround(o->seconds * 1e6) : UINT64_MAX;
+    struct timespec due = {0};
+    struct hs_progress progress;
+    hs_progress_begin(&progress, "replaying", end_us);
+    int status = 0;
+    while (status == 0) {
+        const uint64_t before_us = s->now_us;
+        status = step_again(s, from_us);
+        if (status == 0 && s->now_us > end_us) {
+            break;
+        }
+        if (status == 0 && s->window && s->now_us >= from_us) {
+            status = keep_pace(s, &due, s->now_us - before_us);
+        }
+        if (status == 0 && s->player.jump_s != 0) {
+            status = jump(s, bus, &from_us);
+        }
+        hs_progress_update(&progress, s->now_us);
+    }
+    hs_progress_end(&progress);
+    return status < 0 ? -1 : 0;
+}
+
+/* What the recording proved. A difference is an error: the picture is not the one that was seen. */
+static int judge_again(const struct sim *s)
+{
+    const struct replay *p = &s->replay;
+    hs_report_object("replay");
+    hs_report_integer("steps", (int64_t)p->steps);
+    hs_report_put("departures", p->count.departures);
+    hs_report_put("checks", p->count.checks);
+    hs_report_put("checks_failed", p->count.checks_failed);
+    hs_report_put("reads_differ", p->count.reads_differ);
+    hs_report_flag("has_ended", p->has_ended);
+    hs_report_close();
+    if (!s->options.is_quiet) {
+        printf("replay: %llu steps, %.1f s; checks of the glass %u, failed %u; departures %u%s\n",
+               (unsigned long long)p->steps, (double)p->now_us * 1e-6, p->count.checks,
+               p->count.checks_failed, p->count.departures,
+               p->has_ended ? "" : "; the recording has no end");
+    }
+    if (p->error[0] != '\0') {
+        return hs_error(s->options.replay, "what stands before it was shown", "%s", p->error);
+    }
+    if (p->count.checks_failed + p->count.reads_differ + p->count.departures != 0 &&
+        !s->options.is_any_replayed) {
+        return hs_error(s->options.replay, "was the image changed, or the recording edited?",
+                        "the flight was not the one recorded: from %.6f s on",
+                        (double)p->departed_us * 1e-6);
+    }
+    return 0;
 }
 
 static void report_bus(const struct sim *s)
@@ -495,6 +644,59 @@ static int choose_tables(struct sim *s, struct bench_bus *bus)
     return o->table_2 ? hear_beside(bus, second, &s->table_2.profile, 1) : 0;
 }
 
+/* Show a recording: its bus, its controls and its settings take the place of those named. */
+static int run_again(struct sim *s, const struct bench_bus *bus)
+{
+    s->socket.fd = -1;
+    s->can = (struct lm_can){.receive = no_bus};
+    s->player = (struct window_player){.speed = s->options.speed};
+    if (open_again(s, bus) != 0) {
+        return -1;
+    }
+    warn_of_database(s);
+    s->options.width_px = (uint16_t)s->replay.head.width_px;
+    s->options.height_px = (uint16_t)s->replay.head.height_px;
+    int status = open_bezel(s);
+    if (s->window) {
+        window_watch(s->window, &s->player);
+    }
+    status = status == 0 ? fly_again(s, bus) : status;
+    return status == 0 ? judge_again(s) : status;
+}
+
+/* Fly: bus, script and window as they were named. */
+static int run_flight(struct sim *s, const struct bench_bus *bus)
+{
+    const struct options *o = &s->options;
+    const struct record_sink sink = {s, put_line};
+    const struct bench_glass glass = {o->width_px, o->height_px, o->glass};
+    const struct bench_scene scene = {.database = o->database,
+                                      .radar = o->radar ? &s->radar : NULL,
+                                      .recorder = o->record ? &s->recorder : NULL,
+                                      .sink = &sink};
+    if (o->record && hs_atomic_open(&s->recording, o->record) != 0) {
+        return -1;
+    }
+    if (bench_open(&s->bench, &scene, &glass, o->seed, bus, &s->hands.port) != 0) {
+        return hs_error(o->database, "landmass-db build makes a database", "%s", s->bench.error);
+    }
+    warn_of_database(s);
+    /* What an interface lets through is what the unit hears, which the database may say. */
+    if (open_bus(s) != 0 || open_second_log(s) != 0 || open_sent_log(s) != 0 ||
+        script_read(&s->script, o->script, s->bench.unit->map.radar) != 0 || open_bezel(s) != 0) {
+        return -1;
+    }
+    int status = fly(s);
+    if (status == 0 && o->bus_out) {
+        status = hs_atomic_commit(&s->sent);
+    }
+    if (status == 0 && o->record) {
+        record_end(&s->recorder);
+        status = hs_atomic_commit(&s->recording);
+    }
+    return status;
+}
+
 static int run(struct sim *s)
 {
     const struct options *o = &s->options;
@@ -517,22 +719,7 @@ static int run(struct sim *s)
     if (choose_tables(s, &bus) != 0) {
         return -1;
     }
-    const struct bench_glass glass = {o->width_px, o->height_px, o->glass};
-    const struct bench_scene scene = {o->database, o->radar ? &s->radar : NULL};
-    if (bench_open(&s->bench, &scene, &glass, o->seed, &bus, &s->hands.port) != 0) {
-        return hs_error(o->database, "landmass-db build makes a database", "%s", s->bench.error);
-    }
-    warn_of_database(s);
-    /* What an interface lets through is what the unit hears, which the database may say. */
-    if (open_bus(s) != 0 || open_second_log(s) != 0 || open_sent_log(s) != 0 ||
-        script_read(&s->script, o->script, s->bench.unit->map.radar) != 0 || open_bezel(s) != 0) {
-        bench_close(&s->bench);
-        return -1;
-    }
-    int status = fly(s);
-    if (status == 0 && o->bus_out) {
-        status = hs_atomic_commit(&s->sent);
-    }
+    const int status = o->replay ? run_again(s, &bus) : run_flight(s, &bus);
     if (status == 0) {
         report_flight(s);
     }
@@ -540,7 +727,10 @@ static int run(struct sim *s)
         print_summary(s);
     }
     window_close(s->window);
-    bench_close(&s->bench);
+    if (s->bench.unit) {
+        bench_close(&s->bench);
+    }
+    replay_close(&s->replay);
     return status;
 }
 
@@ -560,6 +750,7 @@ int main(int argc, char **argv)
     free(s->bezel_pixels);
     drv_can_socket_close(&s->socket);
     hs_atomic_abort(&s->sent);
+    hs_atomic_abort(&s->recording);
     if (s->log_file) {
         fclose(s->log_file);
     }

@@ -100,7 +100,7 @@ static const char *take_profile(void *context, const char *name)
 /* Numbers as the table of options keeps them. */
 struct raw {
     long node, every, seed;
-    double start, seconds;
+    double start, seconds, from, speed;
 };
 
 static bool read_table(struct options *o, struct raw *raw, int argc, char **argv, int *exit_code)
@@ -140,6 +140,18 @@ static bool read_table(struct options *o, struct raw *raw, int argc, char **argv
          "obey keys, knobs and commands that come as frames of the bus (docs/bus.md)", false},
         {"bus-out", HS_OUTPUT, &o->bus_out, 0, 0, "FILE.log",
          "write the frames that the unit sends, as candump -L does, in flight time", false},
+        {"record", HS_OUTPUT, &o->record, 0, 0, "FILE.log",
+         "record the flight, so that --replay shows it again bit for bit on any machine", false},
+        {"replay", HS_INPUT, &o->replay, 0, 0, "FILE.log",
+         "show a recording of --record or of a panel; NAME-001.log, ... follow NAME-000.log",
+         false},
+        {"from", HS_REAL, &raw->from, 0, 9999999, "S",
+         "of --replay: show and write pictures from here on; --seconds counts from here", false},
+        {"speed", HS_REAL, &raw->speed, 0.015625, 64, "X",
+         "of --replay in the window: 0.5 is half as fast (1)", false},
+        {"replay-anyway", HS_FLAG, &o->is_any_replayed, 0, 0, NULL,
+         "replay although image, bus table, radar or version are not those of the recording",
+         false},
         {"script", HS_INPUT, &o->script, 0, 0, "FILE", "operate the controls by a script (below)",
          false},
         {"png", HS_FOLDER, &o->png_folder, 0, 0, "DIR",
@@ -180,6 +192,8 @@ static bool read_table(struct options *o, struct raw *raw, int argc, char **argv
         HS_NEEDS_ROW("start", "bus"),
         {"Script", HS_HEADING, NULL, 0, 0, NULL, script_help, false},
         {"Keys of the window", HS_HEADING, NULL, 0, 0, NULL, window_keys_help, false},
+        {"Keys of the window with --replay", HS_HEADING, NULL, 0, 0, NULL, window_player_help,
+         false},
     };
     return hs_options_read(&usage, options, sizeof options / sizeof options[0], argc, argv,
                            exit_code);
@@ -210,7 +224,22 @@ static bool check(const struct options *o, int *exit_code)
         *exit_code = hs_options_wrong(&usage, "--start", "needs the log of --bus");
         return false;
     }
-    if (!o->has_window && !o->bus_log && o->seconds <= 0) {
+    if (o->bus_log_2 && o->record) {
+        *exit_code = hs_options_wrong(&usage, "--record", "holds one bus: without --bus2");
+        return false;
+    }
+    if (o->replay && (o->bus_log || o->can_interface || o->script || o->record || o->bus_out)) {
+        *exit_code =
+            hs_options_wrong(&usage, "--replay",
+                             "has bus and controls of its own: without --bus, --can, --script, "
+                             "--record and --bus-out");
+        return false;
+    }
+    if ((o->from_s > 0 || o->is_any_replayed) && !o->replay) {
+        *exit_code = hs_options_wrong(&usage, "--from", "and --replay-anyway need --replay");
+        return false;
+    }
+    if (!o->has_window && !o->bus_log && !o->replay && o->seconds <= 0) {
         *exit_code = hs_options_wrong(&usage, "--seconds",
                                       "or --bus or --window is needed, or the run would never end");
         return false;
@@ -221,7 +250,7 @@ static bool check(const struct options *o, int *exit_code)
 bool options_read(struct options *o, int argc, char **argv, int *exit_code)
 {
     *o = (struct options){.width_px = 768, .height_px = 768};
-    struct raw raw = {.every = 30, .seconds = NAN};
+    struct raw raw = {.every = 30, .seconds = NAN, .speed = 1};
     if (!read_table(o, &raw, argc, argv, exit_code)) {
         return false;
     }
@@ -229,6 +258,8 @@ bool options_read(struct options *o, int argc, char **argv, int *exit_code)
     o->every = (uint32_t)raw.every;
     o->seed = (uint32_t)raw.seed;
     o->start_s = raw.start;
+    o->from_s = raw.from;
+    o->speed = raw.speed;
     o->seconds = isnan(raw.seconds) ? 0 : raw.seconds;
     return check(o, exit_code);
 }

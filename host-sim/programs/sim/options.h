@@ -11,10 +11,14 @@
 
 struct options {
     const char *database, *radar, *bus_log, *can_interface, *bus_out, *script, *png_folder;
-    double start_s; /* into the bus log */
-    double seconds; /* 0: to the end of the bus log, or for ever */
-    uint32_t every; /* of the pictures for --png; 0: only those the script asks for */
-    uint32_t seed;  /* of the noise */
+    const char *record, *replay; /* recordings to be written, and to be shown */
+    double from_s;               /* into the recording */
+    double speed;                /* of a recording in the window */
+    bool is_any_replayed;        /* what differs from the recording is a warning */
+    double start_s;              /* into the bus log */
+    double seconds;              /* 0: to the end of the bus log, or for ever */
+    uint32_t every;              /* of the pictures for --png; 0: only those the script asks for */
+    uint32_t seed;               /* of the noise */
     uint16_t width_px, height_px;
     bool has_window, has_bezel, is_quiet;
     int heading;                          /* of the bus: 0 true, 1 magnetic */

@@ -21,7 +21,18 @@ bool window_poll(struct window *w);
 /* Show a picture of the bezel's size. */
 void window_show(struct window *w, const uint32_t *pixels);
 
+/* What the user wants of a recording that is shown. */
+struct window_player {
+    bool is_paused;
+    double speed;   /* 1: as fast as it was flown; 1/64..64 */
+    int32_t jump_s; /* wanted jump, forward or back; whoever jumps sets it to 0 */
+};
+
+/* From now on keys and mouse serve the player, which is borrowed, and nothing is operated. */
+void window_watch(struct window *w, struct window_player *player);
+
 /* The keys, for --help. */
+extern const char window_player_help[];
 extern const char window_keys_help[];
 
 #endif

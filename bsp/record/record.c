@@ -1,0 +1,320 @@
+#include "record.h"
+
+#include <inttypes.h>
+#include <stdio.h>
+#include <string.h>
+
+#include "fx/crc32c.h"
+
+static void put_line(struct recorder *r, uint64_t time_us, const char *interface,
+                     const struct lm_can_frame *f)
+{
+    char line[RECORD_LINE_MAX];
+    const uint64_t us = r->zero_us + time_us;
+    int n = snprintf(line, sizeof line, "(%" PRIu64 ".%06u) %s ", us / 1000000,
+                     (unsigned)(us % 1000000), interface);
+    n += snprintf(line + n, sizeof line - (size_t)n, "%0*" PRIX32 "#%s",
+                  f->is_extended || f->is_error ? 8 : 3, f->id | (f->is_error ? 0x20000000u : 0),
+                  f->is_remote ? "R" : "");
+    if (f->is_remote) {
+        n += snprintf(line + n, sizeof line - (size_t)n, "%u", f->length);
+    }
+    for (uint32_t i = 0; i < f->length && !f->is_remote; i++) {
+        n += snprintf(line + n, sizeof line - (size_t)n, "%02X", f->data[i]);
+    }
+    line[n++] = '\n';
+    r->sink.put(r->sink.ctx, line, (size_t)n);
+}
+
+static void put_own(struct recorder *r, uint64_t time_us, uint32_t kind, const uint8_t *data,
+                    uint32_t count)
+{
+    struct lm_can_frame f = {.id = RECORD_ID + kind, .is_extended = true, .length = (uint8_t)count};
+    memcpy(f.data, data, count);
+    put_line(r, time_us, RECORD_OWN, &f);
+}
+
+static void put_word(struct recorder *r, uint32_t kind, uint8_t first, uint32_t word)
+{
+    const uint8_t data[5] = {first, (uint8_t)word, (uint8_t)(word >> 8), (uint8_t)(word >> 16),
+                             (uint8_t)(word >> 24)};
+    put_own(r, r->now_us, kind, data, sizeof data);
+}
+
+/* The steps that are not written yet. The line has the time of the step before them: frames that
+ * came since then stand below it. */
+static void put_ticks(struct recorder *r)
+{
+    if (r->ticks.count > 0) {
+        put_own(r, r->ticks.base_us, RECORD_STEPS, r->ticks.bytes, r->ticks.count);
+        r->ticks.count = 0;
+    }
+}
+
+/* Reads that ended well, and polls that found one under way. One of the two is zero. */
+static void put_reads(struct recorder *r)
+{
+    if (r->read.waits > 0) {
+        put_word(r, RECORD_WAITS, 0, r->read.waits);
+        r->read.waits = 0;
+    }
+    if (r->read.count > 0) {
+        put_word(r, RECORD_READS, (uint8_t)r->read.count, r->read.crc);
+        r->read.count = r->read.crc = 0;
+    }
+}
+
+/* Before any event: what came before it. */
+static void put_pending(struct recorder *r)
+{
+    put_ticks(r);
+    put_reads(r);
+}
+
+static void put_blob(struct recorder *r, uint32_t kind, const uint8_t *bytes, uint32_t count)
+{
+    uint8_t whole[RECORD_BLOB_MAX + 1];
+    put_pending(r);
+    whole[0] = (uint8_t)count;
+    memcpy(whole + 1, bytes, count);
+    for (uint32_t at = 0; at <= count; at += 8) {
+        const uint32_t left = count + 1 - at;
+        put_own(r, r->now_us, kind, whole + at, left < 8 ? left : 8);
+    }
+}
+
+static void put_event(struct recorder *r, uint32_t kind, int status, uint32_t word)
+{
+    put_pending(r);
+    put_word(r, kind, (uint8_t)status, word);
+}
+
+/* ---- flash ---- */
+
+static int read_start(void *ctx, uint64_t offset, void *destination, uint32_t length)
+{
+    struct recorder *r = ctx;
+    const int status = r->flash->read_start(r->flash->ctx, offset, destination, length);
+    if (status == LM_OK) {
+        r->read.destination = destination;
+        r->read.length = length;
+    } else {
+        put_event(r, RECORD_READ_REFUSED, status, 0);
+    }
+    return status;
+}
+
+static int read_poll(void *ctx)
+{
+    struct recorder *r = ctx;
+    const int status = r->flash->read_poll(r->flash->ctx);
+    if (status == LM_BUSY) {
+        if (r->steps == 0) {
+            if (r->read.count > 0) {
+                put_reads(r);
+            }
+            r->read.waits++;
+        }
+        return status;
+    }
+    if (r->read.waits > 0 || r->read.count == UINT8_MAX) {
+        put_reads(r);
+    }
+    if (status == LM_OK) {
+        put_ticks(r);
+        r->read.count++;
+        r->read.crc = fx_crc32c(r->read.crc, r->read.destination, r->read.length);
+    } else {
+        put_event(r, RECORD_READ_FAILED, status, 0);
+    }
+    return status;
+}
+
+/* ---- bus ---- */
+
+static int receive(void *ctx, struct lm_can_frame *frame)
+{
+    struct recorder *r = ctx;
+    const int status = r->can->receive(r->can->ctx, frame);
+    if (status == 1) {
+        put_pending(r);
+        put_line(r, frame->time_us, RECORD_HEARD, frame);
+    } else if (status < 0) {
+        put_event(r, RECORD_BUS_DOWN, status, 0);
+    }
+    return status;
+}
+
+static int send_frame(void *ctx, const struct lm_can_frame *frame)
+{
+    struct recorder *r = ctx;
+    const int status = r->can->send(r->can->ctx, frame);
+    if (status != r->send_status) {
+        put_event(r, RECORD_SEND, status, 0);
+        r->send_status = status;
+    }
+    if (status == LM_OK) {
+        put_pending(r);
+        put_line(r, r->now_us, RECORD_SENT, frame);
+    }
+    return status;
+}
+
+/* ---- controls ---- */
+
+static int next_control(void *ctx, struct lm_control *control)
+{
+    struct recorder *r = ctx;
+    const int status = r->controls->next(r->controls->ctx, control);
+    if (status == 1) {
+        uint8_t bytes[RECORD_BLOB_MAX];
+        put_blob(r, RECORD_CONTROL, bytes, record_control_bytes(control, bytes));
+    }
+    return status;
+}
+
+static void tell_refusal(void *ctx, enum lm_refusal reason)
+{
+    const struct recorder *r = ctx;
+    if (r->controls->refused) {
+        r->controls->refused(r->controls->ctx, reason);
+    }
+}
+
+/* ---- display ---- */
+
+static int acquire(void *ctx, struct lm_surface *surface)
+{
+    struct recorder *r = ctx;
+    const int status = r->display->acquire(r->display->ctx, surface);
+    const uint8_t age = status == LM_OK ? surface->age : r->age;
+    if (status != r->acquire_status || age != r->age) {
+        put_event(r, RECORD_ACQUIRE, status, age);
+        r->acquire_status = status;
+        r->age = age;
+    }
+    if (status == LM_OK) {
+        r->surface = *surface;
+    }
+    return status;
+}
+
+uint32_t record_rows_crc(const struct lm_surface *s, uint32_t number)
+{
+    uint32_t crc = 0;
+    for (uint32_t y = number % RECORD_CHECK_ROWS; y < s->height_px; y += RECORD_CHECK_ROWS) {
+        const uint32_t *row = s->pixels + (size_t)y * s->stride_px;
+        uint8_t bytes[3 * 1024];
+        uint32_t n = 0;
+        for (uint32_t x = 0; x < s->width_px && x < 1024; x++) {
+            const uint32_t pixel = row[x] >> s->shift;
+            bytes[n++] = (uint8_t)pixel;
+            bytes[n++] = (uint8_t)(pixel >> 8);
+            bytes[n++] = (uint8_t)(pixel >> 16);
+        }
+        crc = fx_crc32c(crc, bytes, n);
+    }
+    return crc;
+}
+
+static int present(void *ctx, const struct lm_damage *changed)
+{
+    struct recorder *r = ctx;
+    r->pictures++;
+    if (r->check_every != 0 && r->pictures % r->check_every == 0) {
+        const uint32_t number = r->pictures / r->check_every;
+        put_event(r, RECORD_CHECK, (int)(number % RECORD_CHECK_ROWS),
+                  record_rows_crc(&r->surface, number));
+    }
+    const int status = r->display->present(r->display->ctx, changed);
+    if (status != r->present_status) {
+        put_event(r, RECORD_PRESENT, status, 0);
+        r->present_status = status;
+    }
+    return status;
+}
+
+/* ---- begin, steps, end ---- */
+
+static void wrap(struct recorder *r, struct lm_board *board)
+{
+    r->flash = board->flash;
+    r->can = board->can;
+    r->controls = board->controls;
+    r->display = board->display;
+    r->flash_of_unit = (struct lm_flash){.ctx = r,
+                                         .size_bytes = r->flash->size_bytes,
+                                         .read_start = read_start,
+                                         .read_poll = read_poll};
+    r->can_of_unit = (struct lm_can){.ctx = r, .receive = receive};
+    r->controls_of_unit =
+        (struct lm_controls){.ctx = r, .next = next_control, .refused = tell_refusal};
+    r->display_of_unit = (struct lm_display){.ctx = r,
+                                             .width_px = r->display->width_px,
+                                             .height_px = r->display->height_px,
+                                             .acquire = acquire,
+                                             .present = present};
+    board->flash = &r->flash_of_unit;
+    board->can = &r->can_of_unit;
+    board->controls = &r->controls_of_unit;
+    board->display = &r->display_of_unit;
+}
+
+void record_begin(struct recorder *r, const struct record_sink *sink, struct lm_board *board,
+                  uint64_t zero_us, uint32_t check_every)
+{
+    struct record_head head;
+    char text[RECORD_BLOB_MAX];
+    memset(r, 0, sizeof *r);
+    r->sink = *sink;
+    r->zero_us = zero_us;
+    r->check_every = check_every;
+    record_describe(&head, board, zero_us);
+    wrap(r, board);
+    put_blob(r, RECORD_HEAD, (const uint8_t *)text,
+             (uint32_t)record_head_write(&head, text, sizeof text));
+}
+
+/* A step's time is the pause since the one before, less the usual one, folded to a small number:
+ * 0, -1, 1, -2, ... are 0, 1, 2, 3, in groups of seven bits, the lowest first. */
+void record_step(struct recorder *r, uint64_t now_us)
+{
+    uint8_t bytes[10];
+    uint8_t count = 0;
+    const uint64_t late = now_us - r->now_us - RECORD_TICK_US; /* below 2^63 either way */
+    uint64_t folded = late >> 63 ? ~(late << 1) : late << 1;
+    put_reads(r);
+    do {
+        bytes[count++] = (uint8_t)((folded & 0x7f) | (folded > 0x7f ? 0x80 : 0));
+        folded >>= 7;
+    } while (folded != 0 && count < 8);
+    if (r->ticks.count + count > 8) {
+        put_ticks(r);
+    }
+    if (r->ticks.count == 0) {
+        r->ticks.base_us = r->now_us;
+    }
+    memcpy(r->ticks.bytes + r->ticks.count, bytes, count);
+    r->ticks.count = (uint8_t)(r->ticks.count + count);
+    r->now_us = now_us;
+    r->steps++;
+    if ((r->can->send != NULL) != (r->can_of_unit.send != NULL)) {
+        r->can_of_unit.send = r->can->send ? send_frame : NULL;
+        put_event(r, RECORD_VOICE, r->can->send != NULL, 0);
+    }
+}
+
+void record_flush(struct recorder *r)
+{
+    put_pending(r);
+}
+
+void record_part(struct recorder *r, uint32_t number)
+{
+    put_event(r, RECORD_PART, 0, number);
+}
+
+void record_end(struct recorder *r)
+{
+    put_event(r, RECORD_END, 0, (uint32_t)r->steps);
+}

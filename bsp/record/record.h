@@ -1,0 +1,143 @@
+/* Recording of a flight: everything that a board gives its unit, so that the unit shows the same
+ * again, bit for bit, on any machine (docs/FORMATS.md, "Recordings").
+ *
+ * A unit is a function of its board's settings, of the image, of the times of its steps, and of
+ * what the ports answer. The recorder stands between a board's ports and the unit and writes those
+ * answers down, in the order of the calls, as lines of a candump log. What follows from the rest is
+ * not written: the bytes of the flash, the pictures.
+ *
+ *     record_begin(&r, &sink, &board, zero_us);    before lm_unit_init: it exchanges the ports
+ *     lm_unit_init(&unit, &board);
+ *     for (;;) { record_step(&r, now_us); lm_unit_step(&unit, now_us); }
+ *     record_end(&r); */
+#ifndef RECORD_H
+#define RECORD_H
+
+#include <stddef.h>
+
+#include "lm/unit.h"
+
+enum {
+    RECORD_VERSION = 1,
+    RECORD_ID = 0x1F4C4D00,  /* identifier of the recorder's own frames, of 29 bits, plus one of: */
+    RECORD_HEAD = 0,         /* blob: the head, a text */
+    RECORD_STEPS = 1,        /* times of steps */
+    RECORD_CONTROL = 2,      /* blob: a control that the unit took */
+    RECORD_READS = 3,        /* reads of the flash that ended well in this step */
+    RECORD_READ_FAILED = 4,  /* one that ended badly */
+    RECORD_READ_REFUSED = 5, /* one that could not be started */
+    RECORD_WAITS = 6,        /* polls of a read at the start that found it under way */
+    RECORD_BUS_DOWN = 7,     /* the bus answered that it is down */
+    RECORD_SEND = 8,         /* what the bus answers to frames from now on */
+    RECORD_ACQUIRE = 9,      /* what the display answers from now on, and the age of its buffers */
+    RECORD_PRESENT = 10,     /* the same of pictures presented */
+    RECORD_CHECK = 11,       /* checksum of some rows of a picture presented */
+    RECORD_PART = 12,        /* a part of a recording begins: its number */
+    RECORD_END = 13,         /* the recording ends in good order */
+    RECORD_VOICE = 14, /* whether the bus can be sent to, from this step on; not before the first */
+    RECORD_KINDS
+};
+
+/* Interfaces of the lines: frames heard and sent, and the recorder's own. */
+#define RECORD_HEARD "can0"
+#define RECORD_SENT  "sent"
+#define RECORD_OWN   "unit"
+
+enum {
+    RECORD_BLOB_MAX = 255,
+    RECORD_LINE_MAX = 80,
+    RECORD_TICK_US = 2000, /* the pause between steps that costs least to write */
+    RECORD_CHECK_ROWS = 16 /* a check covers every 16th row, the next one the rows below */
+};
+
+/* Where lines go. `put` borrows them for the call. */
+struct record_sink {
+    void *ctx;
+    void (*put)(void *ctx, const char *line, size_t bytes);
+};
+
+/* What a recording says of itself. */
+struct record_head {
+    char version[16];     /* of the firmware */
+    uint64_t zero_us;     /* time of the log at which the unit's clock is 0 */
+    uint64_t image_bytes; /* of the flash */
+    uint32_t image_crc;   /* CRC-32C of its first 4 KiB, which hold the checksums of the rest */
+    uint32_t profile_crc; /* of the bus's table, every number of it */
+    uint32_t radar_crc;   /* of the board's radar table; 0: the image's or the built-in one */
+    char profile[32];     /* name of the bus's table, as one word */
+    uint32_t width_px, height_px;
+    uint32_t tile_slots, glass_step_px, noise_seed, flash_poll_limit;
+    uint32_t node, hardware_revision;
+    uint32_t switches; /* bits: magnetic, reports, obeys, whole, heading, strobe, borders,
+                          knows_profile */
+    char restart[24];  /* "-": none; blanks as underscores */
+};
+
+/* Recorder; the caller owns it, and it must not move while the unit runs. */
+struct recorder {
+    struct record_sink sink;
+    /* The board's ports, borrowed, and those that the unit is given. */
+    const struct lm_flash *flash;
+    const struct lm_can *can;
+    const struct lm_controls *controls;
+    const struct lm_display *display;
+    struct lm_flash flash_of_unit;
+    struct lm_can can_of_unit;
+    struct lm_controls controls_of_unit;
+    struct lm_display display_of_unit;
+
+    uint64_t zero_us;
+    uint64_t now_us;     /* of the step */
+    uint64_t written_us; /* time of the last step that is in a line */
+    uint64_t steps;      /* so far; 0: the unit is being initialised */
+    struct {
+        uint8_t bytes[8];
+        uint8_t count;
+        uint64_t base_us; /* time of the step before its first */
+    } ticks;
+    struct {
+        const void *destination;
+        uint32_t length;
+        uint32_t count, crc; /* of those that ended well and are not written yet */
+        uint32_t waits;
+    } read;
+    int send_status, acquire_status, present_status;
+    uint8_t age;
+    struct lm_surface surface;
+    uint32_t pictures, check_every;
+};
+
+/* Fill the head for a board. Reads 4 KiB of the flash, and waits for them, at most
+ * flash_poll_limit polls. */
+void record_describe(struct record_head *head, const struct lm_board *board, uint64_t zero_us);
+
+/* The head as one line of text, and back. record_head_read returns false for any other text. */
+size_t record_head_write(const struct record_head *head, char *text, size_t room);
+bool record_head_read(struct record_head *head, const char *text);
+
+/* Begin: write the head, and put the recorder's ports into *board, before lm_unit_init. A checksum
+ * of the picture is written with every `check_every`th one; 0: never. */
+void record_begin(struct recorder *r, const struct record_sink *sink, struct lm_board *board,
+                  uint64_t zero_us, uint32_t check_every);
+
+/* Announce a step, before lm_unit_step. */
+void record_step(struct recorder *r, uint64_t now_us);
+
+/* Write what is pending, such as before another part begins. */
+void record_flush(struct recorder *r);
+
+/* Write that part `number` begins here. Call record_flush before. */
+void record_part(struct recorder *r, uint32_t number);
+
+/* The last line. */
+void record_end(struct recorder *r);
+
+/* A control as bytes, and back. record_control_bytes returns how many; record_control_read returns
+ * false if they are no control. */
+uint32_t record_control_bytes(const struct lm_control *control, uint8_t bytes[RECORD_BLOB_MAX]);
+bool record_control_read(struct lm_control *control, const uint8_t *bytes, uint32_t count);
+
+/* Checksum of the rows of a surface that the check of picture `number` covers. */
+uint32_t record_rows_crc(const struct lm_surface *s, uint32_t number);
+
+#endif

@@ -1,0 +1,564 @@
+#include "replay.h"
+
+#include <errno.h>
+#include <stdarg.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "drv/can_log.h"
+#include "fx/crc32c.h"
+
+static void stop(struct replay *p, const char *format, ...) __attribute__((format(printf, 2, 3)));
+
+/* The first cause stays. */
+static void stop(struct replay *p, const char *format, ...)
+{
+    p->next.kind = REPLAY_OVER;
+    if (p->error[0] == '\0') {
+        va_list arguments;
+        va_start(arguments, format);
+        vsnprintf(p->error, sizeof p->error, format, arguments);
+        va_end(arguments);
+    }
+}
+
+static void depart(struct replay *p)
+{
+    if (p->count.departures++ == 0) {
+        p->departed_us = p->now_us;
+    }
+}
+
+/* ---- lines ---- */
+
+/* NAME-003.log after NAME-002.log. False if the name has no such number, or there is no such
+ * file. */
+static bool open_next_part(struct replay *p)
+{
+    const size_t length = strlen(p->path);
+    char *digits = p->path + length - 7; /* "002.log" */
+    unsigned number;
+    if (length < 8 || digits[-1] != '-' || sscanf(digits, "%3u", &number) != 1 || number == 999 ||
+        strcmp(digits + 3, ".log") != 0) {
+        return false;
+    }
+    char next[8];
+    snprintf(next, sizeof next, "%03u.log", number + 1);
+    memcpy(digits, next, 7);
+    FILE *file = fopen(p->path, "r");
+    if (!file) {
+        return false;
+    }
+    fclose(p->file);
+    p->file = file;
+    p->line = 0;
+    return true;
+}
+
+static bool is_interface(const char *line, const char *name)
+{
+    const char *c = strchr(line, ' ');
+    const size_t length = strlen(name);
+    return c && strncmp(c + 1, name, length) == 0 && c[1 + length] == ' ';
+}
+
+/* Read a line into the event. False if there is none. */
+static bool read_line(struct replay *p, struct replay_event *e)
+{
+    char line[REPLAY_LINE_BYTES];
+    if (!fgets(line, sizeof line, p->file) &&
+        !(open_next_part(p) && fgets(line, sizeof line, p->file))) {
+        return false;
+    }
+    p->line++;
+    const char *end = strchr(line, '\n');
+    if (!end) {
+        p->count.torn += feof(p->file) != 0;
+        if (!feof(p->file)) {
+            stop(p, "%s line %u: no line of a recording", p->path, p->line);
+        }
+        return false;
+    }
+    line[end - line] = '\0';
+    const char *cause = drv_can_log_parse(line, &e->frame);
+    const bool is_own = is_interface(line, RECORD_OWN);
+    if (cause || (is_own && (e->frame.id < RECORD_ID || e->frame.id >= RECORD_ID + RECORD_KINDS))) {
+        stop(p, "%s line %u: %s", p->path, p->line,
+             cause ? cause : "the recorder writes no such frame");
+        return false;
+    }
+    e->kind = is_own ? REPLAY_OWN : is_interface(line, RECORD_SENT) ? REPLAY_SENT : REPLAY_HEARD;
+    e->frame.id -= is_own ? RECORD_ID : 0;
+    e->frame.time_us -= p->head.zero_us; /* of a frame that is heard, its arrival */
+    return true;
+}
+
+/* Join the lines of a blob: its length, then its bytes. */
+static void join_blob(struct replay *p)
+{
+    struct replay_event *e = &p->next;
+    const struct lm_can_frame first = e->frame;
+    uint8_t whole[RECORD_BLOB_MAX + 9];
+    const uint32_t wanted = first.length > 0 ? 1u + first.data[0] : 1;
+    uint32_t got = first.length;
+    memcpy(whole, first.data, first.length);
+    while (got < wanted) {
+        if (!read_line(p, e) || e->kind != REPLAY_OWN || e->frame.id != first.id ||
+            e->frame.length == 0) {
+            if (p->error[0] == '\0' && !feof(p->file)) {
+                stop(p, "%s line %u: the lines of a control are not complete", p->path, p->line);
+            }
+            e->kind = REPLAY_OVER;
+            return;
+        }
+        memcpy(whole + got, e->frame.data, e->frame.length);
+        got += e->frame.length;
+    }
+    e->frame = first;
+    e->blob_bytes = got - 1 < RECORD_BLOB_MAX ? got - 1 : RECORD_BLOB_MAX;
+    memcpy(e->blob, whole + 1, e->blob_bytes);
+    e->blob[e->blob_bytes] = '\0';
+}
+
+static uint32_t word_of(const struct lm_can_frame *f)
+{
+    const uint8_t *d = f->data;
+    return d[1] | (uint32_t)d[2] << 8 | (uint32_t)d[3] << 16 | (uint32_t)d[4] << 24;
+}
+
+/* What an own frame is besides an answer of a port: the mark of a part, or of the end. */
+static bool take_mark(struct replay *p)
+{
+    const struct lm_can_frame *f = &p->next.frame;
+    if (f->id == RECORD_PART) {
+        if (word_of(f) != ++p->part) {
+            stop(p, "%s line %u: part %u is missing before it", p->path, p->line, p->part);
+        }
+        return true;
+    }
+    if (f->id == RECORD_END) {
+        p->has_ended = true;
+        p->next.kind = REPLAY_OVER;
+    }
+    return false;
+}
+
+/* See that the next event is there. */
+static void look_ahead(struct replay *p)
+{
+    struct replay_event *e = &p->next;
+    while (e->kind == REPLAY_NONE) {
+        if (!read_line(p, e)) {
+            e->kind = REPLAY_OVER;
+            return;
+        }
+        if (e->kind != REPLAY_OWN) {
+            return;
+        }
+        if (e->frame.id == RECORD_HEAD || e->frame.id == RECORD_CONTROL) {
+            join_blob(p);
+        } else if (e->frame.id == RECORD_READS) {
+            e->left = e->frame.data[0];
+        } else if (e->frame.id == RECORD_WAITS) {
+            e->left = word_of(&e->frame);
+        } else if (take_mark(p) && e->kind != REPLAY_OVER) {
+            e->kind = REPLAY_NONE;
+        }
+    }
+}
+
+/* What stands below a line of steps happened in the last of them. */
+static bool is_due(const struct replay *p)
+{
+    return p->ticks.at >= p->ticks.count;
+}
+
+/* True if the next event of this step is this one of the recorder's. */
+static bool is_next(struct replay *p, uint32_t kind)
+{
+    if (!is_due(p)) {
+        return false;
+    }
+    look_ahead(p);
+    return p->next.kind == REPLAY_OWN && p->next.frame.id == kind;
+}
+
+/* The same of a frame heard or sent. */
+static bool is_next_frame(struct replay *p, uint32_t kind)
+{
+    if (!is_due(p)) {
+        return false;
+    }
+    look_ahead(p);
+    return (uint32_t)p->next.kind == kind;
+}
+
+static void take(struct replay *p)
+{
+    p->next.kind = REPLAY_NONE;
+}
+
+static int status_of(const struct replay *p)
+{
+    return (int8_t)p->next.frame.data[0];
+}
+
+/* A status that may change: the present one. */
+static int status_now(struct replay *p, uint32_t kind, int *status)
+{
+    if (is_next(p, kind)) {
+        *status = status_of(p);
+        take(p);
+    }
+    return *status;
+}
+
+/* ---- flash ---- */
+
+static int read_start(void *ctx, uint64_t offset, void *destination, uint32_t length)
+{
+    struct replay *p = ctx;
+    if (is_next(p, RECORD_READ_REFUSED)) {
+        const int status = status_of(p);
+        take(p);
+        return status == LM_OK ? LM_ERR_IO : status;
+    }
+    if (offset > p->image->size_bytes || length > p->image->size_bytes - offset) {
+        depart(p); /* the recorder would have said so */
+        return LM_ERR_RANGE;
+    }
+    p->offset = offset;
+    p->destination = destination;
+    p->length = length;
+    return LM_OK;
+}
+
+static int fetch(struct replay *p)
+{
+    int status = p->image->read_start(p->image->ctx, p->offset, p->destination, p->length);
+    if (status == LM_OK) {
+        do {
+            status = p->image->read_poll(p->image->ctx);
+        } while (status == LM_BUSY);
+    }
+    if (status != LM_OK) {
+        stop(p, "the image cannot be read at %llu", (unsigned long long)p->offset);
+    }
+    return status;
+}
+
+/* One read of a run is over: at the end of the run its bytes must be those of the recording. */
+static void count_read(struct replay *p)
+{
+    p->reads_crc = fx_crc32c(p->reads_crc, p->destination, p->length);
+    if (--p->next.left == 0) {
+        p->count.reads_differ += p->reads_crc != word_of(&p->next.frame);
+        p->reads_crc = 0;
+        take(p);
+    }
+}
+
+static int read_poll(void *ctx)
+{
+    struct replay *p = ctx;
+    if (is_next(p, RECORD_WAITS) && p->next.left > 0) {
+        p->next.left--;
+        if (p->next.left == 0) {
+            take(p);
+        }
+        return LM_BUSY;
+    }
+    if (is_next(p, RECORD_READ_FAILED)) {
+        take(p);
+        return LM_ERR_IO;
+    }
+    if (!is_next(p, RECORD_READS) || p->next.left == 0) {
+        return LM_BUSY;
+    }
+    const int status = fetch(p);
+    if (status == LM_OK) {
+        count_read(p);
+    }
+    return status;
+}
+
+/* ---- bus ---- */
+
+static int receive(void *ctx, struct lm_can_frame *frame)
+{
+    struct replay *p = ctx;
+    if (is_next(p, RECORD_BUS_DOWN)) {
+        take(p);
+        return LM_ERR_IO;
+    }
+    if (!is_next_frame(p, REPLAY_HEARD)) {
+        return 0;
+    }
+    *frame = p->next.frame;
+    take(p);
+    return 1;
+}
+
+static bool are_same(const struct lm_can_frame *a, const struct lm_can_frame *b)
+{
+    return a->id == b->id && a->is_extended == b->is_extended && a->length == b->length &&
+           memcmp(a->data, b->data, a->length < 8 ? a->length : 8) == 0;
+}
+
+static int send_frame(void *ctx, const struct lm_can_frame *frame)
+{
+    struct replay *p = ctx;
+    const int status = status_now(p, RECORD_SEND, &p->send_status);
+    if (status == LM_OK) {
+        const bool is_sent = is_next_frame(p, REPLAY_SENT);
+        if (!is_sent || !are_same(frame, &p->next.frame)) {
+            depart(p);
+        }
+        if (is_sent) {
+            take(p);
+        }
+    }
+    return status;
+}
+
+/* ---- controls ---- */
+
+static int next_control(void *ctx, struct lm_control *control)
+{
+    struct replay *p = ctx;
+    if (!is_next(p, RECORD_CONTROL)) {
+        return 0;
+    }
+    const bool is_sound = record_control_read(control, p->next.blob, p->next.blob_bytes);
+    take(p);
+    if (!is_sound) {
+        stop(p, "%s line %u: no control", p->path, p->line);
+    }
+    return is_sound;
+}
+
+/* ---- display ---- */
+
+static size_t pixels(const struct replay *p)
+{
+    return (size_t)p->head.width_px * p->head.height_px;
+}
+
+static struct lm_surface canvas(const struct replay *p, uint8_t age)
+{
+    return (struct lm_surface){.pixels = p->canvas,
+                               .stride_px = p->head.width_px,
+                               .width_px = (uint16_t)p->head.width_px,
+                               .height_px = (uint16_t)p->head.height_px,
+                               .age = age};
+}
+
+static int acquire(void *ctx, struct lm_surface *surface)
+{
+    struct replay *p = ctx;
+    if (is_next(p, RECORD_ACQUIRE)) {
+        const uint32_t age = word_of(&p->next.frame);
+        p->acquire_status = status_of(p);
+        p->age = age <= UINT8_MAX ? (uint8_t)age : 0;
+        take(p);
+    }
+    if (p->acquire_status != LM_OK) {
+        return p->acquire_status;
+    }
+    const uint32_t age = p->age;
+    if (age > 0 && age <= LM_AGES && age <= p->pictures) {
+        memcpy(p->canvas, p->shown[(p->pictures + REPLAY_BUFFERS - (age - 1)) % REPLAY_BUFFERS],
+               pixels(p) * sizeof *p->canvas);
+    }
+    *surface = canvas(p, p->age);
+    return LM_OK;
+}
+
+static void check_picture(struct replay *p)
+{
+    if (is_next(p, RECORD_CHECK)) {
+        const struct lm_surface s = canvas(p, 0);
+        p->count.checks++;
+        p->count.checks_failed +=
+            record_rows_crc(&s, p->next.frame.data[0]) != word_of(&p->next.frame);
+        take(p);
+    }
+}
+
+static int present(void *ctx, const struct lm_damage *changed)
+{
+    struct replay *p = ctx;
+    (void)changed;
+    check_picture(p);
+    p->pictures++;
+    memcpy(p->shown[p->pictures % REPLAY_BUFFERS], p->canvas, pixels(p) * sizeof *p->canvas);
+    return status_now(p, RECORD_PRESENT, &p->present_status);
+}
+
+const uint32_t *replay_glass(const struct replay *p)
+{
+    return p->shown[p->pictures % REPLAY_BUFFERS];
+}
+
+/* ---- begin, steps, end ---- */
+
+int replay_open(struct replay *p, const char *path)
+{
+    memset(p, 0, sizeof *p);
+    snprintf(p->path, sizeof p->path, "%s", path);
+    p->file = fopen(path, "r");
+    if (!p->file) {
+        snprintf(p->error, sizeof p->error, "%s: %s", path, strerror(errno));
+        return -1;
+    }
+    const bool has_head = is_next(p, RECORD_HEAD);
+    if (!has_head || !record_head_read(&p->head, (const char *)p->next.blob)) {
+        snprintf(p->error, sizeof p->error,
+                 has_head ? "%s: a recording of another form" : "%s: does not begin as a recording",
+                 path);
+        replay_close(p);
+        return -1;
+    }
+    take(p);
+    return 0;
+}
+
+const char *replay_difference(const struct replay *p, const struct record_head *mine)
+{
+    const struct record_head *h = &p->head;
+    return strcmp(h->version, mine->version) != 0 ? "another version of the firmware"
+           : h->image_bytes != mine->image_bytes || h->image_crc != mine->image_crc
+               ? "another image"
+           : h->profile_crc != mine->profile_crc ? "another table of the bus"
+           : h->radar_crc != mine->radar_crc     ? "another radar table"
+                                                 : NULL;
+}
+
+static int lend_pictures(struct replay *p)
+{
+    p->canvas = calloc(pixels(p), sizeof *p->canvas);
+    bool is_complete = p->canvas != NULL;
+    for (uint32_t i = 0; i < REPLAY_BUFFERS; i++) {
+        p->shown[i] = calloc(pixels(p), sizeof *p->canvas);
+        is_complete = is_complete && p->shown[i];
+    }
+    return is_complete ? 0 : -1;
+}
+
+static void set_board(struct replay *p, struct lm_board *board)
+{
+    const struct record_head *h = &p->head;
+    const uint32_t s = h->switches;
+    board->bus_node = (uint8_t)h->node;
+    board->hardware_revision = (uint8_t)h->hardware_revision;
+    board->is_heading_magnetic = (s & 1) != 0;
+    board->tells_reports = (s >> 1 & 1) != 0;
+    board->obeys_controls = (s >> 2 & 1) != 0;
+    board->options = (struct lm_glass_options){.is_sector_whole = (s >> 3 & 1) != 0,
+                                               .has_heading = (s >> 4 & 1) != 0,
+                                               .has_strobe = (s >> 5 & 1) != 0,
+                                               .has_borders = (s >> 6 & 1) != 0};
+    board->glass_step_px = h->glass_step_px;
+    board->noise_seed = h->noise_seed;
+    board->flash_poll_limit = h->flash_poll_limit;
+    board->tile_pool_bytes = h->tile_slots * sizeof(struct lm_tile);
+    board->restart = strcmp(h->restart, "-") == 0 ? NULL : p->head.restart;
+}
+
+int replay_wrap(struct replay *p, struct lm_board *board)
+{
+    if (lend_pictures(p) != 0) {
+        return -1;
+    }
+    set_board(p, board);
+    p->image = board->flash;
+    p->flash = (struct lm_flash){.ctx = p,
+                                 .size_bytes = board->flash->size_bytes,
+                                 .read_start = read_start,
+                                 .read_poll = read_poll};
+    p->can = (struct lm_can){.ctx = p, .receive = receive};
+    p->controls = (struct lm_controls){.ctx = p, .next = next_control};
+    p->display = (struct lm_display){.ctx = p,
+                                     .width_px = (uint16_t)p->head.width_px,
+                                     .height_px = (uint16_t)p->head.height_px,
+                                     .acquire = acquire,
+                                     .present = present};
+    board->flash = &p->flash;
+    board->can = &p->can;
+    board->controls = &p->controls;
+    board->display = &p->display;
+    return 0;
+}
+
+/* The next number of the line of steps (record.c). */
+static bool take_tick(struct replay *p, uint64_t *pause_us)
+{
+    uint64_t folded = 0;
+    for (uint32_t shift = 0; p->ticks.at < p->ticks.count; shift += 7) {
+        const uint8_t byte = p->ticks.bytes[p->ticks.at++];
+        folded |= (uint64_t)(byte & 0x7f) << shift;
+        if ((byte & 0x80) == 0) {
+            const uint64_t late = folded & 1 ? ~(folded >> 1) : folded >> 1;
+            *pause_us = late + RECORD_TICK_US;
+            return true;
+        }
+    }
+    return false;
+}
+
+/* What the step before left is a departure: it did not ask for it. */
+static bool find_ticks(struct replay *p)
+{
+    bool has_departed = false;
+    while (!is_next(p, RECORD_STEPS)) {
+        if (p->next.kind == REPLAY_OVER) {
+            return false;
+        }
+        if (!has_departed) {
+            depart(p);
+            has_departed = true;
+        }
+        take(p);
+    }
+    p->ticks.count = p->next.frame.length;
+    p->ticks.at = 0;
+    memcpy(p->ticks.bytes, p->next.frame.data, sizeof p->ticks.bytes);
+    take(p);
+    return true;
+}
+
+bool replay_step(struct replay *p, uint64_t *now_us)
+{
+    uint64_t pause_us;
+    while (is_due(p)) {
+        if (!find_ticks(p)) {
+            return false;
+        }
+    }
+    if (!take_tick(p, &pause_us) || p->now_us + pause_us < p->now_us) {
+        stop(p, "%s line %u: no time of a step", p->path, p->line);
+        return false;
+    }
+    p->now_us += pause_us;
+    p->steps++;
+    if (is_next(p, RECORD_VOICE)) {
+        p->can.send = status_of(p) != 0 ? send_frame : NULL;
+        take(p);
+    }
+    *now_us = p->now_us;
+    return true;
+}
+
+void replay_close(struct replay *p)
+{
+    if (p->file) {
+        fclose(p->file);
+        p->file = NULL;
+    }
+    for (uint32_t i = 0; i < REPLAY_BUFFERS; i++) {
+        free(p->shown[i]);
+        p->shown[i] = NULL;
+    }
+    free(p->canvas);
+    p->canvas = NULL;
+}
