@@ -19,6 +19,9 @@ HOST_HEADERS_drivers    := -Idrivers/include
 HOST_HEADERS_bench      := -Ibsp/bench-linux -Ibsp/record
 LIB_bench := $(O)/libbench.a
 $(LIB_bench): $(call objs,$(wildcard bsp/bench-linux/*.c bsp/record/*.c))
+# Recorder and replay, which boards with files share.
+LIB_record := $(O)/librecord.a
+$(call archive, $(LIB_record), $(wildcard bsp/record/*.c) drivers/can/can_log.c)
 
 # The libraries $(1) and all below them, in the order of linking.
 host_needs    = $(filter $(1) $(foreach l,$(1),$(HOST_NEEDS_$l)),$(HOST_LIBS))

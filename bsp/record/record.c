@@ -149,13 +149,11 @@ static int send_frame(void *ctx, const struct lm_can_frame *frame)
 {
     struct recorder *r = ctx;
     const int status = r->can->send(r->can->ctx, frame);
-    if (status != r->send_status) {
-        put_event(r, RECORD_SEND, status, 0);
-        r->send_status = status;
-    }
     if (status == LM_OK) {
         put_pending(r);
         put_line(r, r->now_us, RECORD_SENT, frame);
+    } else {
+        put_event(r, RECORD_UNSENT, status, 0);
     }
     return status;
 }

@@ -28,7 +28,7 @@ enum {
     RECORD_READ_REFUSED = 5, /* one that could not be started */
     RECORD_WAITS = 6,        /* polls of a read at the start that found it under way */
     RECORD_BUS_DOWN = 7,     /* the bus answered that it is down */
-    RECORD_SEND = 8,         /* what the bus answers to frames from now on */
+    RECORD_UNSENT = 8,       /* a frame that the bus did not take: its answer */
     RECORD_ACQUIRE = 9,      /* what the display answers from now on, and the age of its buffers */
     RECORD_PRESENT = 10,     /* the same of pictures presented */
     RECORD_CHECK = 11,       /* checksum of some rows of a picture presented */
@@ -101,7 +101,7 @@ struct recorder {
         uint32_t count, crc; /* of those that ended well and are not written yet */
         uint32_t waits;
     } read;
-    int send_status, acquire_status, present_status;
+    int acquire_status, present_status;
     uint8_t age;
     struct lm_surface surface;
     uint32_t pictures, check_every;

@@ -55,7 +55,7 @@ struct replay {
     uint64_t offset;
     uint32_t length, reads_crc, reads_wanted_crc;
     bool is_reading_run;
-    int send_status, acquire_status, present_status;
+    int acquire_status, present_status;
     uint8_t age;
 
     uint32_t

@@ -52,6 +52,8 @@ $(call fuzz_target, netem_model,  netem tracer lib firmware fixed)
 $(call fuzz_target, hid,          lib drivers)
 $(call fuzz_target, panel_config, lib)
 $(call fuzz_target, traced,       tracer lib firmware fixed)
+$(call fuzz_target, replay,       lib firmware fixed)
+$(O)/bin/tests/fuzz/test_fuzz_replay $(O)/bin/fuzz/replay: $(call sanitized,$(LIB_record))
 $(O)/bin/tests/fuzz/test_fuzz_panel_config $(O)/bin/fuzz/panel_config: $(call sanitized,$(LIB_panel))
 
 TESTS += $(FUZZ_NAMES:%=$(O)/bin/tests/fuzz/test_fuzz_%)

@@ -229,6 +229,32 @@ for bad in '--size 255x400' '--size 400x1025' '--size 400' '--size axb' '--every
     check "so is $bad" wrong --db "$db" --bus "$log" $bad
 done
 
+# A recording and its replay
+again="$work/again"
+check 'a flight is recorded' exits 0 "$sim" --db "$db" --bus "$log" --seconds 3 --node 20 --reports \
+    --png "$work/once" --every 10 --record "$work/rec.log"
+check 'and shown again' exits 0 "$sim" --db "$db" --replay "$work/rec.log" --png "$again" --every 10
+check 'with the same pictures' diff -r "$work/once" "$again"
+check 'and no departure' grep -qE 'failed 0; departures 0$' "$out"
+check 'from a time on only the pictures after it' exits 0 "$sim" --db "$db" --replay "$work/rec.log" --from 2 \
+    --png "$work/afterwards" --every 10
+check 'which are fewer' test "$(pictures afterwards)" -lt "$(pictures again)"
+check 'another image is refused' exits 1 "$sim" --db "$work/coarse.lmdb" --replay "$work/rec.log"
+check 'and named' said 'made with another image'
+check 'unless told, and then the difference is not silent' exits 0 "$sim" --db "$work/coarse.lmdb" \
+    --replay "$work/rec.log" --replay-anyway
+check 'in the figures' grep -qvE 'failed 0; departures 0$' "$out"
+grep -v '1F4C4D01#' "$work/rec.log" >"$work/stepless.log"
+check 'a recording without its steps is refused' exits 1 "$sim" --db "$db" --replay "$work/stepless.log"
+awk 'NR == 700 {next} {print}' "$work/rec.log" >"$work/cut.log"
+check 'a line that was taken out is seen' exits 1 "$sim" --db "$db" --replay "$work/cut.log"
+check 'and told with its time' said 'not the one recorded: from [0-9]'
+head -c 50001 "$work/rec.log" >"$work/torn.log"
+check 'a torn recording is shown to its end' exits 0 "$sim" --db "$db" --replay "$work/torn.log"
+check 'which is told' grep -q 'the recording has no end' "$out"
+check 'a log of the bus is no recording' exits 1 "$sim" --db "$db" --replay "$log"
+check 'a recording has its own bus' wrong --db "$db" --replay "$work/rec.log" --bus "$log"
+
 # The window
 check 'without a screen the flight goes on' \
     env SDL_VIDEODRIVER=nosuch "$sim" --db "$db" --bus "$log" --seconds 0.3 --window --quiet 2>"$last_error"
