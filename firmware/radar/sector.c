@@ -414,7 +414,6 @@ static void find_targets(struct lm_sector *s, struct lm_tile_cache *tiles, fx_ba
                                           .time_us = s->platform.time_us,
                                           .tiles = tiles,
                                           .lod = s->lod};
-    s->live.count = 0;
     if (s->targets->live && s->targets->live->count != 0) {
         find_live(s, &query, azimuth);
     }
@@ -532,6 +531,7 @@ static void take_sample(struct lm_sector *s, struct lm_tile_cache *tiles, int32_
         s->samples = (s->sweep << 12) + (uint32_t)sample;
     }
     follow(s);
+    s->live.count = 0;
     trace_average(s, tiles, azimuth, line);
     const bool has_steady =
         s->targets && lm_target_set_has_any(s->targets) && add_targets(s, tiles, azimuth, line);
@@ -617,7 +617,9 @@ bool lm_sector_sample_ahead(struct lm_sector *s, struct lm_tile_cache *tiles,
             return false;
         }
         take_sample(s, tiles, sample, line);
-        *azimuths -= fx_min_u32(1u << azimuths_log2_of(s), *azimuths);
+        /* Two live targets cost as much as an azimuth. */
+        const uint32_t cost = (1u << azimuths_log2_of(s)) + (s->live.count + 1) / 2;
+        *azimuths -= fx_min_u32(cost, *azimuths);
     }
     return true;
 }
