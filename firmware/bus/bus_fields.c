@@ -14,6 +14,7 @@ const struct lm_bus_scale lm_bus_scales[LM_BUS_UNITS] = {
     [LM_BUS_STATE] = {"state", "state", 1, 1, 0},
     [LM_BUS_MS] = {"ms", "ms", 1, 1, 0},
     [LM_BUS_RATE] = {"x", "x 256", 1, 1, 8},
+    [LM_BUS_AMOUNT] = {"amount", "amount x 256", 1, 1, 8},
     [LM_BUS_NUMBER] = {"number", "number", 1, 1, 0},
     [LM_BUS_WORD] = {"word", "word", 1, 1, 0},
 };
@@ -64,6 +65,8 @@ const struct lm_bus_field_info lm_bus_fields[LM_BUS_FIELDS] = {
     [LM_BUS_LIVE_ACCELERATION] = {"live-acceleration", LM_BUS_WORD},
     [LM_BUS_LIVE_REMOVE] = {"live-remove", LM_BUS_BITS},
     [LM_BUS_LIVE_CLEAR] = {"live-clear", LM_BUS_BITS},
+    [LM_BUS_MALFUNCTION] = {"malfunction", LM_BUS_AMOUNT},
+    [LM_BUS_MALFUNCTION_CLEAR] = {"malfunction-clear", LM_BUS_NUMBER},
 };
 
 int64_t lm_bus_divide(int64_t n, int64_t divisor)

@@ -106,6 +106,8 @@ static const struct lm_bus_row canas17_rows[] = {
     COUNT_ROW("exercise time",                  1820, EXERCISE_TIME,       TYPE(LONG),     0, INT32_MAX),
     ROW("exercise rate",                        1821, EXERCISE_RATE,    0, TYPE(FLOAT),    0,    16, 1000000, 3000, 10000),
     COUNT_ROW("exercise seed",                  1822, EXERCISE_SEED,       TYPE(LONG),     0, INT32_MAX),
+    ROW("malfunction",                          1825, MALFUNCTION,      0, TYPE(FLOAT), -180,   180, 1000000, 3000, 10000),
+    COUNT_ROW("malfunction clear",              1826, MALFUNCTION_CLEAR,   TYPE(UCHAR),    0,       255),
 };
 
 /* What XCSoar's driver takes, and what is made for it therefore sends: byte 1 says nothing, each

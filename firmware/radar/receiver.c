@@ -108,12 +108,27 @@ void lm_receiver_set(struct lm_receiver *r, const struct lm_radar *radar,
     r->cells = slant->cells;
     r->hole = slant->hole;
     r->looks_log2 = fx_min_u32(radar->receiver.noise_looks_log2, LM_NOISE_LOOKS_LOG2_MAX);
+    r->loss_db_q8 = r->rise_db_q8 = 0;
     set_bins(r, radar, height_m_q10, range, fov);
     /* 2^32 times 2^21.3; over metres in Q8 it is bins in Q16. */
     const uint64_t pulse_m_q24 = (uint64_t)range->pulse_ns[fov] * LM_HALF_LIGHT_M_PER_NS_Q24;
     const uint64_t pulse_q16 = pulse_m_q24 / fx_max_u32(slant->cell_m_q8, 1);
     set_pulse(r, pulse_q16);
     r->grain_step_q16 = pulse_q16 > 65536 ? (uint32_t)(((uint64_t)1 << 32) / pulse_q16) : 65536;
+}
+
+/* A weak signal is a stronger noise and a fall of both, as with the air. */
+void lm_receiver_impair(struct lm_receiver *r, int32_t loss_db_q8, int32_t rise_db_q8)
+{
+    r->loss_db_q8 = loss_db_q8;
+    r->rise_db_q8 = rise_db_q8;
+    if (loss_db_q8 == 0 && rise_db_q8 == 0) {
+        return;
+    }
+    for (uint32_t i = 0; i < r->cells; i++) {
+        r->noise_db_q8[i] += loss_db_q8 + rise_db_q8;
+        r->fall_db_q8[i] += loss_db_q8;
+    }
 }
 
 /* (a + b) w, for the powers of two bins and a weight of at most 2^15, in whole parts of 2^24. Upper

@@ -276,12 +276,13 @@ static struct lm_position antenna_of(const struct lm_sar_command *c)
 
 /* Compute noise and rain of a patch for an antenna that points at its centre all along. A jammer
  * therefore raises the noise of the whole patch alike. */
-static void find_weather(struct lm_sar *s, const struct lm_environment *environment)
+static void find_weather(struct lm_sar *s, const struct lm_sar_setup *setup)
 {
+    const struct lm_environment *environment = setup->environment;
     const struct lm_sar_command *c = &s->command;
     uint32_t distance_m_q8;
     fx_bam_t azimuth;
-    s->floor_db_q8 = s->radar->sar.noise_floor_db_q8;
+    s->floor_db_q8 = s->radar->sar.noise_floor_db_q8 + setup->noise_rise_db_q8;
     s->rain.count = 0;
     if (!environment || environment->rain_count + environment->jammer_count == 0) {
         return;
@@ -331,7 +332,7 @@ int lm_sar_start(struct lm_sar *s, const struct lm_radar *radar, const struct lm
     s->grain = grain_of(command, setup->epoch);
     lm_grain_curve_set(&s->speckle, 256u << radar->sar.speckle.looks_log2);
     s->across_mm_s = across_mm_s;
-    find_weather(s, setup->environment);
+    find_weather(s, setup);
     s->defocus_lines_q8 =
         flight && !command->is_steady
             ? lm_defocus_lines_q8(flight->lateral_mm_s2, radar->sar.mocomp_residual_permille,

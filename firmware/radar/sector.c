@@ -46,6 +46,7 @@ void lm_sector_start(struct lm_sector *s, const struct lm_radar *radar,
     s->targets = NULL;
     s->chips = NULL;
     s->is_shared = false;
+    s->malfunctions = NULL;
     s->command = *command;
     s->is_begun = s->is_leftward = false;
     s->taps[0] = s->taps[1] = (struct lm_sector_taps){.is_kept = false};
@@ -177,6 +178,8 @@ static void set_ranges(struct lm_sector *s, struct lm_tile_cache *tiles, int32_t
     lm_slant_set(&s->slant, s->edge_m_q8 + bin_m_q8 / 2, bin_m_q8, bins, &s->grid, first_m_q8);
     lm_receiver_set(&s->receiver, s->radar, &s->slant, above_m_q10, s->command.range_index,
                     (enum lm_fov)s->command.fov);
+    lm_receiver_impair(&s->receiver, lm_malfunction_loss_db_q8(s->malfunctions),
+                       lm_malfunction_q8(s->malfunctions, LM_MALFUNCTION_NOISE));
     set_foreground(s, tiles->db);
     lm_beam_clear(&s->beam);
 }
@@ -205,6 +208,12 @@ static int32_t coarse_m_q10(int32_t height_m_q10)
     return (int32_t)((uint32_t)(height_m_q10 + (1 << log2 >> 1)) >> log2 << log2);
 }
 
+static bool has_same_receiver(const struct lm_sector *s)
+{
+    return s->receiver.loss_db_q8 == lm_malfunction_loss_db_q8(s->malfunctions) &&
+           s->receiver.rise_db_q8 == lm_malfunction_q8(s->malfunctions, LM_MALFUNCTION_NOISE);
+}
+
 /* Recompute the ranges if the height has changed by a hundredth and a metre, or the window has
  * changed. Until then all stages keep the old height, gain and horizon alike. */
 static void refresh_ranges(struct lm_sector *s, struct lm_tile_cache *tiles, int32_t height_m_q10,
@@ -215,7 +224,7 @@ static void refresh_ranges(struct lm_sector *s, struct lm_tile_cache *tiles, int
                                          : !differs(height_m_q10, s->grid.height_m_q10) &&
                                                !differs(reference_m_q10, s->grid.reference_m_q10);
     const bool is_same = s->grid.cells != 0 && s->edge_m_q8 == old_edge_m_q8 &&
-                         s->half_m == old_half_m && has_height;
+                         s->half_m == old_half_m && has_height && has_same_receiver(s);
     if (!is_same) {
         set_ranges(s, tiles, height_m_q10, reference_m_q10);
     }
@@ -235,7 +244,8 @@ static void set_tilt(struct lm_sector *s)
         set->is_tilt_manual ? set->tilt : lm_antenna_auto_tilt(above_m, fx_max_u32(far_m, 1));
     const int32_t bars = mode_of(s)->bars, bar = (int32_t)(s->sweep % (uint32_t)bars);
     s->tilt = axis + (2 * bar - bars + 1) * (int32_t)(antenna->bar_spacing / 2);
-    s->fan = lm_antenna_fan_at(s->tilt, set->is_pencil ? 0 : antenna->fan);
+    s->fan = lm_antenna_fan_at(s->tilt + lm_malfunction_bam(s->malfunctions, LM_MALFUNCTION_TILT),
+                               set->is_pencil ? 0 : antenna->fan);
 }
 
 void lm_sector_set_beam(struct lm_sector *s, const struct lm_beam_setting *setting)
@@ -273,6 +283,7 @@ void lm_sector_begin(struct lm_sector *s, struct lm_tile_cache *tiles,
         height_m_q10 = coarse_m_q10(height_m_q10);
         reference_m_q10 = coarse_m_q10(reference_m_q10);
     }
+    s->look_off = 0 - (fx_bam_t)lm_malfunction_bam(s->malfunctions, LM_MALFUNCTION_DRIFT);
     s->up = platform->heading;
     s->platform = *platform;
     lm_geo_set_origin(&s->origin, platform->position);
@@ -526,7 +537,8 @@ static void follow(struct lm_sector *s)
 static void take_sample(struct lm_sector *s, struct lm_tile_cache *tiles, int32_t sample,
                         struct lm_line *line)
 {
-    const fx_bam_t azimuth = s->up + (fx_bam_t)lm_beam_azimuth(&s->beam, s->radar, sample);
+    const fx_bam_t azimuth =
+        s->up + s->look_off + (fx_bam_t)lm_beam_azimuth(&s->beam, s->radar, sample);
     if (s->is_shared) { /* the number chooses a draw: no sweep has 2^12 samples */
         s->samples = (s->sweep << 12) + (uint32_t)sample;
     }
@@ -679,7 +691,7 @@ uint32_t lm_sector_draw_line(struct lm_sector *s, struct lm_tile_cache *tiles,
     const struct lm_weather *weather = NULL;
     if (s->environment) {
         lm_weather_line(&s->weather, s->environment, &s->receiver, s->radar, s->platform.position,
-                        s->up + (fx_bam_t)azimuth);
+                        s->up + s->look_off + (fx_bam_t)azimuth);
         weather = &s->weather;
     }
     lm_receiver_run(&s->receiver, weather, drawn, s->sweep, s->power_q24, s->level_db_q8);

@@ -2,7 +2,14 @@
 
 #include "lm/version.h"
 
-enum { ROW_COUNTERS = 3, COUNTER_ROWS = 13, ROW_NOW = 16, ROW_FAULTS = 17, ROW_RESTART = 21 };
+enum {
+    ROW_COUNTERS = 3,
+    COUNTER_ROWS = 13,
+    ROW_NOW = 16,
+    ROW_FAULTS = 17,
+    ROW_RESTART = 21,
+    ROW_BROKEN = 22
+};
 enum { COLUMN_NUMBER = 9, COLUMN_SECOND = 18, COLUMN_SECOND_NUMBER = 27 };
 
 static void add_counter(struct lm_text *t, const char *name, uint32_t value, uint32_t column)
@@ -146,9 +153,10 @@ static void add_database(const struct lm_unit *u, uint32_t row, struct lm_text *
 
 static void add_flags(uint32_t flags, struct lm_text *t)
 {
-    lm_text_add(t, flags ? "NOW" : "NOW  NO FAULT");
+    const bool has_any = (flags & ~(uint32_t)LM_FLAG_MALFUNCTION) != 0;
+    lm_text_add(t, has_any ? "NOW" : "NOW  NO FAULT");
     for (uint32_t i = 0; i < LM_FLAGS; i++) {
-        if (flags & 1u << i) {
+        if (flags & ~(uint32_t)LM_FLAG_MALFUNCTION & 1u << i) {
             lm_text_add(t, "  ");
             lm_text_add(t, lm_flag_word(i));
         }
@@ -172,6 +180,24 @@ static void add_fault(const struct lm_unit *u, uint32_t age, struct lm_text *t)
     lm_text_add(t, lm_flag_word(fault->flag));
 }
 
+/* Apart from the faults, and never among them. All words together fit a row. */
+static void add_broken(const struct lm_malfunctions *m, struct lm_text *t)
+{
+    static const char words[LM_MALFUNCTIONS][6] = {
+        [LM_MALFUNCTION_NO_TRANSMIT] = "TX", [LM_MALFUNCTION_WEAK_TRANSMIT] = "WEAK",
+        [LM_MALFUNCTION_NOISE] = "RX",       [LM_MALFUNCTION_STUCK] = "STUCK",
+        [LM_MALFUNCTION_DRIFT] = "DRIFT",    [LM_MALFUNCTION_LOST_FROM] = "SECT",
+        [LM_MALFUNCTION_LOST_TO] = "",       [LM_MALFUNCTION_FROZEN] = "VIDEO",
+        [LM_MALFUNCTION_TILT] = "TILT",      [LM_MALFUNCTION_KEY] = "KEY",
+    };
+    for (uint32_t i = 0; i < LM_MALFUNCTIONS; i++) {
+        if ((m->set >> i & 1) != 0 && words[i][0] != '\0') {
+            lm_text_add(t, t->length == 0 ? "EXC " : " ");
+            lm_text_add(t, words[i]);
+        }
+    }
+}
+
 struct lm_text lm_bit_row(const struct lm_unit *u, uint32_t row)
 {
     struct lm_text t = {0};
@@ -186,6 +212,8 @@ struct lm_text lm_bit_row(const struct lm_unit *u, uint32_t row)
     } else if (row == ROW_RESTART && u->board->restart) {
         lm_text_add(&t, "RESTART  ");
         lm_text_add(&t, u->board->restart);
+    } else if (row == ROW_BROKEN) {
+        add_broken(&u->malfunctions.now, &t);
     }
     return t;
 }

@@ -153,6 +153,9 @@ static bool apply_button(struct lm_unit *u, const struct lm_control *control, ui
         return false;
     }
     const uint8_t button = (uint8_t)control->button;
+    if (lm_malfunction_q8(&u->malfunctions.now, LM_MALFUNCTION_KEY) == button * 256) {
+        return true; /* as if nobody had touched it */
+    }
     const bool acts =
         control->kind == LM_CONTROL_DOWN
             ? lm_keys_down(&u->keys, button, lm_page_key_style(&u->page, button), now_us)

@@ -29,9 +29,13 @@ void lm_picture_init(struct lm_picture *p, const struct lm_picture_lent *lent,
 enum lm_refusal lm_picture_start(struct lm_picture *p, enum lm_picture_kind kind,
                                  const struct lm_sar_command *patch, uint64_t now_us)
 {
+    const int32_t loss_db_q8 = p->patch_loss_db_q8;
     const enum lm_refusal reason = methods_of[kind]->start(p, patch, now_us);
     if (reason != LM_REFUSED_NOT) {
         return reason;
+    }
+    if (loss_db_q8 != p->patch_loss_db_q8) {
+        lm_picture_set_tone(p);
     }
     lm_page_show_picture(p->lent.page, kind);
     p->next_line_us = now_us;
@@ -51,7 +55,11 @@ void lm_picture_remove(struct lm_picture *p)
 void lm_picture_set_tone(struct lm_picture *p)
 {
     for (uint32_t kind = 0; kind < LM_PICTURES; kind++) {
-        const struct lm_tone_config config = lm_page_tone(p->lent.page, methods_of[kind]->tone(p));
+        struct lm_tone_config config = lm_page_tone(p->lent.page, methods_of[kind]->tone(p));
+        if (kind == LM_PICTURE_PATCH) { /* its noise was raised by the loss: all is darker by it */
+            config.black_db_q8 = (int16_t)(config.black_db_q8 + p->patch_loss_db_q8);
+            config.white_db_q8 = (int16_t)(config.white_db_q8 + p->patch_loss_db_q8);
+        }
         lm_tone_set(&p->tone[kind], &config);
     }
 }
@@ -109,7 +117,9 @@ bool lm_picture_draw_line(struct lm_picture *p, uint64_t now_us, uint32_t *azimu
         return false;
     }
     const uint32_t number = m->draw_line(p, now_us);
-    m->paint(p, number);
+    if (!lm_malfunction_is(p->lent.malfunctions, LM_MALFUNCTION_FROZEN)) {
+        m->paint(p, number);
+    }
     p->next_line_us += m->line_us(p);
     return true;
 }

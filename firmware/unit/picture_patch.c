@@ -70,26 +70,37 @@ static enum lm_refusal start(struct lm_picture *p, const struct lm_sar_command *
     struct lm_sar_command command = *patch;
     struct lm_unit_map *map = p->lent.map;
     const bool is_in_flight = command.is_from_ownship;
+    const struct lm_malfunctions *broken = p->lent.malfunctions;
+    const int32_t loss_db_q8 = lm_malfunction_loss_db_q8(broken);
     if (!map->is_usable) {
         return LM_REFUSED_MAP;
+    }
+    if (lm_malfunction_is(broken, LM_MALFUNCTION_NO_TRANSMIT)) {
+        return LM_REFUSED_SILENT;
+    }
+    if (lm_malfunction_is(broken, LM_MALFUNCTION_STUCK)) {
+        return LM_REFUSED_GIMBAL;
     }
     if (is_in_flight && !resolve_command(p, &command, &flight)) {
         return LM_REFUSED_NAV;
     }
-    const struct lm_sar_setup scene = {.flight = is_in_flight ? &flight : NULL,
-                                       .targets = &map->target_set,
-                                       .chips = &map->chips,
-                                       .relief = relief_of(p, &command),
-                                       .epoch = p->lent.exercise->seed,
-                                       .sea_state = p->lent.environment->sea_state,
-                                       .environment = p->lent.environment,
-                                       .time_us = p->lent.exercise->time_us};
+    const struct lm_sar_setup scene = {
+        .flight = is_in_flight ? &flight : NULL,
+        .targets = &map->target_set,
+        .chips = &map->chips,
+        .relief = relief_of(p, &command),
+        .epoch = p->lent.exercise->seed,
+        .sea_state = p->lent.environment->sea_state,
+        .environment = p->lent.environment,
+        .time_us = p->lent.exercise->time_us,
+        .noise_rise_db_q8 = loss_db_q8 + lm_malfunction_q8(broken, LM_MALFUNCTION_NOISE)};
     const enum lm_refusal reason = lm_sar_judge(p->lent.radar, &command, &scene);
     if (reason != LM_REFUSED_NOT) {
         return reason;
     }
     (void)lm_sar_start(&p->sar, p->lent.radar, &map->db, &command, &scene); /* it is judged */
     lm_page_note_patch(p->lent.page, &command);
+    p->patch_loss_db_q8 = loss_db_q8;
     lm_sar_prefetch_targets(&p->sar, &map->tiles);
     const struct lm_patch_fan fan = {.lines = p->sar.lines,
                                      .cells = cells_of(p),

@@ -1,4 +1,5 @@
 /* Sector: the kind of picture that is swept over and over, whole or in a window. */
+#include "fx/mem.h"
 #include "lm/units.h"
 #include "ownship.h"
 #include "picture_kind.h"
@@ -40,6 +41,7 @@ static enum lm_refusal start(struct lm_picture *p, const struct lm_sar_command *
     p->sector.targets = &p->lent.map->target_set;
     p->sector.chips = &p->lent.map->chips;
     p->sector.environment = p->lent.environment;
+    p->sector.malfunctions = p->lent.malfunctions;
     return LM_REFUSED_NOT;
 }
 
@@ -202,9 +204,36 @@ static uint32_t draw_line(struct lm_picture *p, uint64_t now_us)
                                &p->tone[LM_PICTURE_SECTOR], &p->line);
 }
 
+/* The azimuth that a stuck antenna tells, or that of the next line. */
+static int32_t told_azimuth(const struct lm_picture *p)
+{
+    const struct lm_malfunctions *m = p->lent.malfunctions;
+    return lm_malfunction_is(m, LM_MALFUNCTION_STUCK)
+               ? lm_malfunction_bam(m, LM_MALFUNCTION_STUCK)
+               : lm_sector_edge_bam(&p->sector, p->sector.line);
+}
+
+static bool is_lost(const struct lm_malfunctions *m, int32_t azimuth)
+{
+    return lm_malfunction_is(m, LM_MALFUNCTION_LOST_FROM) &&
+           lm_malfunction_is(m, LM_MALFUNCTION_LOST_TO) &&
+           azimuth >= lm_malfunction_bam(m, LM_MALFUNCTION_LOST_FROM) &&
+           azimuth <= lm_malfunction_bam(m, LM_MALFUNCTION_LOST_TO);
+}
+
+/* Of a stuck antenna only the line is painted that it stands at. */
 static void paint(struct lm_picture *p, uint32_t number)
 {
     const struct lm_sector *s = &p->sector;
+    const struct lm_malfunctions *m = p->lent.malfunctions;
+    const int32_t left = lm_sector_edge_bam(s, number);
+    const bool is_stuck = lm_malfunction_is(m, LM_MALFUNCTION_STUCK);
+    if (is_stuck && (uint32_t)told_azimuth(p) - (uint32_t)left >= s->width) {
+        return;
+    }
+    if (is_lost(m, left + (int32_t)(s->width / 2))) {
+        memset(p->line.grey, 0, s->slant.cells);
+    }
     const struct lm_ppi ppi = lm_view_ppi(&p->view, &p->frame, s->slant.cell_m_q8, s->edge_m_q8);
     lm_scan_conv_sector(&p->plane, &ppi, (fx_bam_t)lm_sector_edge_bam(s, number),
                         (fx_bam_t)lm_sector_edge_bam(s, number + 1), p->line.grey, s->slant.cells);
@@ -281,7 +310,7 @@ static void describe(const struct lm_picture *p, struct lm_symbols *symbols)
     const struct lm_radar *radar = p->lent.radar;
     symbols->range_nm = radar->range[p->lent.page->range_index].range_nm;
     symbols->azimuth_half = radar->azimuth_half[p->lent.page->azimuth_index];
-    symbols->antenna_azimuth = lm_sector_edge_bam(&p->sector, p->sector.line);
+    symbols->antenna_azimuth = told_azimuth(p);
     symbols->antenna_elevation = p->sector.tilt;
     if (p->lent.map->is_usable && p->sector.grid.cells != 0) {
         symbols->coarse_mm = lm_coverage_coarse_mm(&p->coverage, &p->lent.map->db, p->sector.lod,

@@ -95,7 +95,7 @@ static void show_radar(const struct lm_unit *u, const struct lm_glass *glass)
     const struct lm_text sender = lm_sender_fault(u);
     const struct lm_warning_reasons reasons = {database.words, lm_refusal_word(u->unable.reason),
                                                sender.words};
-    lm_overlay_warnings(glass, u->flags, &reasons);
+    lm_overlay_warnings(glass, u->flags & ~(uint32_t)LM_FLAG_MALFUNCTION, &reasons);
 }
 
 static void show_bit(const struct lm_unit *u, const struct lm_glass *glass)

@@ -25,6 +25,7 @@ static void init_picture(struct lm_unit *u)
         .page = &u->page,
         .cursor = &u->cursor,
         .exercise = &u->exercise,
+        .malfunctions = &u->malfunctions.now,
         .options = board->options,
     };
     const struct lm_plane plane = {board->plane, board->display->width_px,
@@ -86,6 +87,7 @@ static void take_events(struct lm_unit *u, const struct lm_bus_event *events, ui
         lm_exercise_take(&u->exercise, &events[i]);
         lm_live_bus_take(&u->live, &events[i],
                          u->exercise.is_told ? u->exercise.time_us : events[i].time_us);
+        lm_malfunction_bus_take(&u->malfunctions, &events[i]);
     }
 }
 
@@ -149,6 +151,7 @@ static void take_bus(struct lm_unit *u, uint64_t now_us)
     lm_canas_service_answer(&u->service, u->board->can, u->flags, now_us);
     lm_nav_at(&u->nav, now_us, &u->ownship);
     lm_exercise_at(&u->exercise, now_us);
+    lm_malfunction_bus_at(&u->malfunctions, now_us);
 }
 
 /* After a jump of the position or a change of its sender, start the picture again: lines seen from

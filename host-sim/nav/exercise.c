@@ -1,6 +1,9 @@
 #include "nav/exercise.h"
 
+#include "hs/number.h"
+
 #include <math.h>
+#include <string.h>
 
 enum { NODE_INSTRUCTOR = 30 };
 
@@ -62,5 +65,118 @@ int nav_exercise_frames(const struct nav_exercise *x, struct canas_codes *codes,
     }
     frames[count++] = canas_long(codes, CANAS_EXERCISE_TIME, NODE_INSTRUCTOR,
                                  (int32_t)lround(fmin(nav_exercise_ms(x, sent_s), INT32_MAX)));
+    return count;
+}
+
+/* ---- malfunctions ---- */
+
+static const struct kind {
+    const char *name;
+    int number, values;
+    double least, most;
+    bool is_ramp;
+} kinds[] = {
+    {"no-transmit", 0, 0, 0, 0, false},     {"weak-transmit", 1, 1, 0, 60, false},
+    {"noise", 2, 1, 0, 60, false},          {"stuck-antenna", 3, 1, -180, 180, false},
+    {"antenna-drift", 4, 1, -60, 60, true}, {"lost-sector", 5, 2, -180, 180, false},
+    {"frozen-video", 7, 0, 0, 0, false},    {"tilt", 8, 1, -30, 30, false},
+    {"dead-key", 9, 1, 1, 28, false},
+};
+
+static const struct kind *kind_named(const char *text, size_t length)
+{
+    for (size_t i = 0; i < sizeof kinds / sizeof *kinds; i++) {
+        if (strlen(kinds[i].name) == length && memcmp(kinds[i].name, text, length) == 0) {
+            return &kinds[i];
+        }
+    }
+    return NULL;
+}
+
+static bool read_values(const struct kind *kind, const char *text, struct nav_malfunction *m)
+{
+    const int count = text[0] != '\0' ? hs_numbers(text, ',', m->value, 2) : 0;
+    for (int i = 0; i < count; i++) {
+        if (!(m->value[i] >= kind->least && m->value[i] <= kind->most)) {
+            return false;
+        }
+    }
+    return count == kind->values && (count < 2 || m->value[0] < m->value[1]);
+}
+
+static bool read_span(const char *text, struct nav_malfunction *m)
+{
+    double span[2] = {0, INFINITY};
+    if (text && hs_numbers(text, ',', span, 2) < 1) {
+        return false;
+    }
+    m->from_s = span[0];
+    m->until_s = span[1];
+    return m->from_s >= 0 && m->until_s > m->from_s;
+}
+
+const char *nav_exercise_add_malfunction(struct nav_exercise *x, const char *text)
+{
+    char words[96];
+    if (x->malfunction_count == NAV_MALFUNCTIONS) {
+        return "is one too many: twelve at most";
+    }
+    if (strlen(text) >= sizeof words) {
+        return "is too long";
+    }
+    strcpy(words, text);
+    char *span = strchr(words, '@'), *values = strchr(words, '=');
+    const size_t length = strcspn(words, "=@");
+    if (span) {
+        *span++ = '\0';
+    }
+    const struct kind *kind = kind_named(words, length);
+    if (!kind) {
+        return "needs one of no-transmit, weak-transmit=DB, noise=DB, stuck-antenna=DEG, "
+               "antenna-drift=DEG_A_MINUTE, lost-sector=FROM,TO, frozen-video, tilt=DEG, "
+               "dead-key=N";
+    }
+    struct nav_malfunction m = {
+        .number = kind->number, .values = kind->values, .is_ramp = kind->is_ramp};
+    if (!read_values(kind, values ? values + 1 : "", &m)) {
+        return "needs its value: 0..60 dB, -180..180 degrees (tilt: -30..30), FROM left of TO, "
+               "-60..60 degrees a minute, or key 1..28; no-transmit and frozen-video have none";
+    }
+    if (!read_span(span, &m)) {
+        return "needs @FROM_S[,UNTIL_S] in seconds";
+    }
+    x->malfunction[x->malfunction_count++] = m;
+    return NULL;
+}
+
+static struct canas_frame frame_of(const struct nav_malfunction *m, int which, double now_s,
+                                   struct canas_codes *codes)
+{
+    const double value = m->is_ramp ? m->value[0] * (now_s - m->from_s) / 60 : m->value[which];
+    struct canas_frame f =
+        canas_float(codes, CANAS_MALFUNCTION, NODE_INSTRUCTOR, fmax(-180, fmin(180, value)));
+    f.data[2] = (uint8_t)(m->number + which);
+    return f;
+}
+
+int nav_malfunction_frames(const struct nav_exercise *x, struct canas_codes *codes, double now_s,
+                           double period_s, struct canas_frame frames[2 * NAV_MALFUNCTIONS])
+{
+    int count = 0;
+    for (int i = 0; i < x->malfunction_count; i++) {
+        const struct nav_malfunction *m = &x->malfunction[i];
+        const int frames_each = m->values == 2 ? 2 : 1;
+        const bool is_told = is_due(ceil(now_s), now_s, period_s) ||
+                             is_due(m->from_s + period_s, now_s + period_s / 2, period_s);
+        const bool is_over = is_due(m->until_s + period_s, now_s + period_s / 2, period_s);
+        for (int k = 0; k < frames_each; k++) {
+            if (is_over) {
+                frames[count++] = canas_uchar(codes, CANAS_MALFUNCTION_CLEAR, NODE_INSTRUCTOR,
+                                              (uint8_t)(m->number + k));
+            } else if (is_told && now_s >= m->from_s && now_s < m->until_s) {
+                frames[count++] = frame_of(m, k, now_s, codes);
+            }
+        }
+    }
     return count;
 }

@@ -170,11 +170,13 @@ static int put_live(struct sender *s, double now_s, int64_t first_us)
 
 static int put_exercise(struct sender *s, double now_s, int64_t first_us)
 {
-    struct canas_frame frames[NAV_EXERCISE_FRAMES];
+    struct canas_frame frames[NAV_EXERCISE_FRAMES + 2 * NAV_MALFUNCTIONS];
     const double period_s = MINOR_US * 1e-6 / s->options->rate_scale;
     const int64_t sent_us = s->slot_us + (NAV_EXERCISE_FRAMES - 1) * SLOT_US;
-    const int count = nav_exercise_frames(&s->options->exercise, &s->codes, now_s, period_s,
-                                          (double)(sent_us - first_us) * 1e-6, frames);
+    int count = nav_exercise_frames(&s->options->exercise, &s->codes, now_s, period_s,
+                                    (double)(sent_us - first_us) * 1e-6, frames);
+    count +=
+        nav_malfunction_frames(&s->options->exercise, &s->codes, now_s, period_s, frames + count);
     for (int i = 0; i < count; i++) {
         if (put(s, &frames[i]) != 0) {
             return -1;

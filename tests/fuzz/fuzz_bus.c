@@ -7,6 +7,7 @@
 #include "lm/canas_service.h"
 #include "lm/exercise.h"
 #include "lm/live_bus.h"
+#include "lm/malfunction_bus.h"
 #include "lm/nav.h"
 #include "lm/status.h"
 #include "lm/weather_bus.h"
@@ -70,6 +71,19 @@ static void check_live(struct lm_live_bus *live, const struct lm_bus_event *even
     FUZZ_ASSERT(live->live.count == there && live->count.sets >= there);
 }
 
+static void check_malfunctions(struct lm_malfunction_bus *b, const struct lm_bus_event *events,
+                               uint32_t count, uint64_t now_us)
+{
+    for (uint32_t i = 0; i < count; i++) {
+        lm_malfunction_bus_take(b, &events[i]);
+    }
+    lm_malfunction_bus_at(b, now_us);
+    FUZZ_ASSERT(b->now.set < 1u << LM_MALFUNCTIONS && (b->now.set != 0 || !b->is_stale));
+    const int32_t loss_db_q8 = lm_malfunction_loss_db_q8(&b->now);
+    FUZZ_ASSERT(loss_db_q8 >= 0 && loss_db_q8 <= LM_NO_TRANSMIT_DB_Q8);
+    FUZZ_ASSERT(abs(lm_malfunction_q8(&b->now, LM_MALFUNCTION_TILT)) <= 30 * 256);
+}
+
 static struct lm_can_frame take_frame(struct fuzz_supply *s, const struct lm_bus_profile *profile,
                                       uint64_t *now_us)
 {
@@ -130,6 +144,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
     lm_bus_init(bus, profile);
     lm_nav_init(nav);
     struct lm_weather_bus weather = {0};
+    struct lm_malfunction_bus malfunctions = {0};
     struct lm_exercise exercise;
     lm_exercise_init(&exercise, 1);
     struct lm_canas_service service;
@@ -149,6 +164,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
         check_weather(&weather, events, count, now_us);
         check_exercise(&exercise, events, count, now_us);
         check_live(live, events, count, now_us);
+        check_malfunctions(&malfunctions, events, count, now_us);
         lm_nav_at(nav, now_us + (frames & 7) * 100000u, &ownship);
         check_ownship(&ownship);
         lm_canas_service_take(&service, &frame);

@@ -171,6 +171,20 @@ static void queue_exercise(struct world *w, struct fuzz_supply *s)
     }
 }
 
+/* One malfunction of any kind, or the end of all. */
+static void queue_malfunction(struct world *w, struct fuzz_supply *s)
+{
+    const uint8_t kind = fuzz_u8(s) % (LM_MALFUNCTIONS + 2);
+    struct lm_can_frame f = bus_frame(1825, LM_CANAS_FLOAT, w->message_code++,
+                                      bus_float_bits((int8_t)fuzz_u8(s)), w->now_us);
+    f.data[2] = kind;
+    if (kind > LM_MALFUNCTIONS) {
+        f = bus_frame(1826, LM_CANAS_UCHAR, w->message_code++, UINT32_MAX, w->now_us);
+        f.length = 5;
+    }
+    queue_frame(w, &f);
+}
+
 static void queue_any(struct world *w, struct fuzz_supply *s)
 {
     struct lm_can_frame f = {.id = fuzz_u32(s), .time_us = w->now_us + fuzz_u16(s)};
@@ -307,7 +321,11 @@ static void act(struct world *w, struct fuzz_supply *s)
         queue_weather(w, s, op >> 4 & 1);
         break;
     case 14:
-        queue_exercise(w, s);
+        if (op >> 4 & 1) {
+            queue_malfunction(w, s);
+        } else {
+            queue_exercise(w, s);
+        }
         break;
     default:
         step(w, 2000);

@@ -56,6 +56,7 @@ static inline double bus_counts_per_unit(enum lm_bus_field field)
         [LM_BUS_STATE] = 1.0,
         [LM_BUS_MS] = 1.0,
         [LM_BUS_RATE] = 256.0,
+        [LM_BUS_AMOUNT] = 256.0,
         [LM_BUS_NUMBER] = 1.0,
         [LM_BUS_WORD] = 1.0,
     };

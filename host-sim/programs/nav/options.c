@@ -81,6 +81,12 @@ static const char *take_exercise_rate(void *context, const char *text)
                : "needs RATE[,FROM_S] with a rate of 0..16, up to eight times, in ascending FROM_S";
 }
 
+static const char *take_malfunction(void *context, const char *text)
+{
+    struct command *c = context;
+    return nav_exercise_add_malfunction(&c->send.exercise, text);
+}
+
 static const char *take_interface(void *context, const char *text)
 {
     struct command *c = context;
@@ -138,7 +144,7 @@ static bool read_table(struct command *c, struct raw *raw, int argc, char **argv
     struct hs_taker circle = {take_circle, c}, straight = {take_straight, c},
                     interface = {take_interface, c}, begin = {take_begin, c}, rain = {take_rain, c},
                     jammer = {take_jammer, c}, live = {take_live, c},
-                    exercise_rate = {take_exercise_rate, c};
+                    exercise_rate = {take_exercise_rate, c}, malfunction = {take_malfunction, c};
     const struct hs_option options[] = {
         {"TRACK", HS_INPUT_ARGUMENT, &c->track_path, 0, 0, NULL,
          "a .csv, .gpx, .igc, .kml or .kmz file, plain or .gz; - is standard input", false},
@@ -205,6 +211,11 @@ static bool read_table(struct command *c, struct raw *raw, int argc, char **argv
          false},
         {"exercise-seed", HS_INTEGER, &raw->seed, 0, 2147483647, "N",
          "tell the seed of speckle and noise, too", false},
+        {"malfunction", HS_TAKER, &malfunction, 0, 0, "NAME[=VALUE][@FROM_S[,UNTIL_S]]",
+         "break the radar, for an exercise: no-transmit, weak-transmit=DB, noise=DB, "
+         "stuck-antenna=DEG, antenna-drift=DEG_A_MINUTE, lost-sector=FROM,TO, frozen-video, "
+         "tilt=DEG, dead-key=N; up to twelve",
+         false},
         {"datum", HS_CHOICE, &raw->datum, 0, 0, "ellipsoid|msl|barometric",
          "what heights are measured from, if the file says it wrong or not at all; they are sent "
          "as 1038, 332 or 320. Left out: as below",

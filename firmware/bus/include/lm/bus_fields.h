@@ -61,6 +61,8 @@ enum lm_bus_field {
     LM_BUS_LIVE_ACCELERATION, /* east, north: 16 bits each, in 0.01 m/s2 */
     LM_BUS_LIVE_REMOVE,       /* removes the target of the service code */
     LM_BUS_LIVE_CLEAR,        /* removes all live targets */
+    LM_BUS_MALFUNCTION,       /* of the kind that the service code numbers: lm/malfunction.h */
+    LM_BUS_MALFUNCTION_CLEAR, /* number of a kind, or 255 for all */
     LM_BUS_FIELDS
 };
 
@@ -77,6 +79,7 @@ enum lm_bus_unit {
     LM_BUS_STATE,        /* a number of a scale: sea state */
     LM_BUS_MS,           /* milliseconds */
     LM_BUS_RATE,         /* a factor * 256 */
+    LM_BUS_AMOUNT,       /* an amount * 256, in a unit that another number tells */
     LM_BUS_NUMBER,       /* a number without a unit */
     LM_BUS_WORD,         /* two or four small numbers, as the 32 bits that they travel in */
     LM_BUS_UNITS

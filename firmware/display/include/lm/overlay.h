@@ -30,10 +30,13 @@ enum lm_flag {
     LM_FLAG_WEATHER = 1 << 9,   /* the bus's weather is stale and will be removed */
     LM_FLAG_BELOW = 1 << 10,    /* the aircraft is below the map's terrain */
     LM_FLAG_MAGNETIC = 1 << 11, /* the heading is from magnetic north, and there is no variation */
-    LM_FLAG_EXERCISE = 1 << 12, /* the exercise clock is silent and runs on by itself */
-    LM_FLAG_SENDER = 1 << 13    /* a sender of the bus is stuck, has a rival, or is contradicted */
+    LM_FLAG_EXERCISE = 1 << 12, /* the sender of the exercise is silent: its clock runs on by
+                                   itself, its malfunctions will end */
+    LM_FLAG_SENDER = 1 << 13,   /* a sender of the bus is stuck, has a rival, or is contradicted */
+    LM_FLAG_MALFUNCTION = 1 << 14 /* the exercise has broken something: not written over the picture
+                                   */
 };
-enum { LM_FLAGS = 14 };
+enum { LM_FLAGS = 15 };
 
 /* The word of flag `number`, 0..LM_FLAGS - 1, which is the number of its bit: at most eight
  * characters, in static memory. */

@@ -18,6 +18,7 @@ struct lm_receiver {
     uint32_t cells;                 /* number of bins */
     uint32_t hole;                  /* of them before the nearest ground */
     uint32_t looks_log2;            /* looks of the noise */
+    int32_t loss_db_q8, rise_db_q8; /* by malfunctions: of the signal, and of the noise */
     /* Pulse: weight of each bin m to either side in a bin's power. weight_q16[0] plus twice the
      * others is 65536. weight_q16[0] is all of it if the pulse is not longer than a bin. */
     uint32_t weight_q16[LM_PULSE_REACH_MAX + 1];
@@ -36,6 +37,10 @@ struct lm_receiver {
 void lm_receiver_set(struct lm_receiver *r, const struct lm_radar *radar,
                      const struct lm_slant *slant, int32_t height_m_q10, uint8_t range_index,
                      enum lm_fov fov);
+
+/* Weaken the signal by `loss_db_q8` and raise the noise by `rise_db_q8`, both 0 or more, once after
+ * each lm_receiver_set. It costs nothing in a line. */
+void lm_receiver_impair(struct lm_receiver *r, int32_t loss_db_q8, int32_t rise_db_q8);
 
 /* Replace the power of each bin by its mean over the pulse. Cost: 9 instructions a bin where the
  * pulse is longer than a bin. */

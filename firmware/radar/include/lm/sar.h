@@ -92,6 +92,7 @@ struct lm_sar_setup {
     uint8_t sea_state;
     const struct lm_environment *environment; /* rain, jammers, wind; NULL: none; read at once */
     uint64_t time_us;                         /* movers are where they are at this time */
+    int32_t noise_rise_db_q8;                 /* by malfunctions */
 };
 
 /* Whether a patch has the detail of its tiles. */

@@ -33,6 +33,7 @@
 #include "lm/foreground.h"
 #include "lm/grain.h"
 #include "lm/line.h"
+#include "lm/malfunction.h"
 #include "lm/radar.h"
 #include "lm/receiver.h"
 #include "lm/sector_floor.h"
@@ -70,13 +71,14 @@ struct lm_sector_command {
 };
 
 /* State of a sector. lm_sector_start sets the command; the geometry is computed by lm_sector_begin.
- * The caller owns it. It may set environment, targets and chips after the start, and change
- * is_shared and command.centre at an edge; all else is read-only to others. */
+ * The caller owns it. It may set environment, targets, chips and malfunctions after the start, and
+ * change is_shared and command.centre at an edge; all else is read-only to others. */
 struct lm_sector {
     const struct lm_radar *radar;             /* borrowed */
     const struct lm_environment *environment; /* borrowed; NULL: fair weather, sea state 3 */
     const struct lm_target_set *targets;      /* borrowed; NULL: none */
     struct lm_chips *chips; /* borrowed; NULL: every signature is drawn as a point, as in NORM */
+    const struct lm_malfunctions *malfunctions; /* borrowed; NULL: none */
     bool is_shared; /* other displays draw the same: no sweep depends on heights of earlier ones */
     struct lm_sector_command command;
 
@@ -86,6 +88,7 @@ struct lm_sector {
     uint32_t sweep;              /* the epoch given plus the sweeps completed: epoch of the noise */
     struct lm_platform platform; /* at the start of the sweep; in NORM its position follows */
     struct lm_geo_origin origin; /* at platform.position of the sample taken last */
+    fx_bam_t look_off;           /* the antenna looks so much farther right than it says */
     fx_bam_t up;                 /* middle of the sector, from north; follows the nose in NORM */
     int32_t left;                /* left edge of the sweep from the middle, signed BAM */
     fx_bam_t width;              /* of a line */

@@ -5,7 +5,7 @@
 #include "lm/text.h"
 #include "lm/unit.h"
 
-enum { LM_BIT_ROWS = 22 };
+enum { LM_BIT_ROWS = 23 };
 
 /* Senders of the bus that are not what they should be; each only grows. docs/bus.md, "Senders that
  * are noticed". */
@@ -32,6 +32,7 @@ struct lm_text lm_sender_fault(const struct lm_unit *u);
  *     16      flags that are raised now
  *     17..20  the faults that rose last, the latest first
  *     21      cause of the board's last restart
+ *     22      what the exercise has broken: no fault
  */
 struct lm_text lm_bit_row(const struct lm_unit *u, uint32_t row);
 

@@ -7,7 +7,8 @@
 #include "lm/overlay.h"
 
 /* The flags that are faults. Those that follow from what the operator switches or asks for are not:
- * LM_FLAG_FROZEN, LM_FLAG_SILENT, LM_FLAG_UNABLE. A board that lights a lamp derives its set from
+ * LM_FLAG_FROZEN, LM_FLAG_SILENT, LM_FLAG_UNABLE. Nor is what an exercise breaks:
+ * LM_FLAG_MALFUNCTION. A board that lights a lamp derives its set from
  * this one. */
 enum {
     LM_FLAGS_FAULT = LM_FLAG_NAV_STALE  /* the ownship's data are stale */
@@ -20,7 +21,7 @@ enum {
                      | LM_FLAG_BELOW   /* height or terrain is wrong */
                      | LM_FLAG_MAGNETIC /* the sender of the variation is silent */
                      | LM_FLAG_SENDER   /* a sender is stuck, has a rival, or disagrees */
-                     | LM_FLAG_EXERCISE /* the sender of the exercise clock is silent */
+                     | LM_FLAG_EXERCISE /* the sender of the exercise is silent */
 };
 
 enum { LM_FAULTS_KEPT = 4 };

@@ -26,6 +26,7 @@
 #include "lm/cursor.h"
 #include "lm/environment.h"
 #include "lm/exercise.h"
+#include "lm/malfunction.h"
 #include "lm/nav.h"
 #include "lm/overlay.h"
 #include "lm/page.h"
@@ -43,6 +44,7 @@ struct lm_picture_lent {
         *page; /* the operator's selection; is told of the picture's kind and the beam's tilt */
     struct lm_cursor *cursor; /* centre of windows and patches; is located again in a new view */
     const struct lm_exercise *exercise; /* its clock and its seed */
+    const struct lm_malfunctions *malfunctions;
     struct lm_glass_options options;
 };
 
@@ -67,7 +69,8 @@ struct lm_picture {
     } acquire;
 
     struct lm_tone tone[LM_PICTURES];
-    struct lm_line line; /* work space */
+    int32_t patch_loss_db_q8; /* of the signal by a weak transmitter, at the patch's start */
+    struct lm_line line;      /* work space */
     struct lm_coverage coverage;
     uint64_t next_line_us; /* when the next line is due */
     bool is_step_spent;    /* a picture or a sweep began in this step, at the cost of a step */
@@ -86,6 +89,7 @@ void lm_picture_init(struct lm_picture *p, const struct lm_picture_lent *lent,
  * the request for a patch, copied, and NULL for any other kind. A sector always begins. Returns
  * LM_REFUSED_NOT; or the reason, and the present picture goes on unchanged:
  * - LM_REFUSED_MAP: a patch is asked for and there is no usable map;
+ * - LM_REFUSED_SILENT, LM_REFUSED_GIMBAL: an exercise has broken transmitter or antenna;
  * - LM_REFUSED_NAV: the patch is seen from the ownship, and navigation is not good (enum
  *   lm_nav_quality);
  * - what lm_sar_judge says of the patch. */

@@ -40,6 +40,7 @@
 #include "lm/fault_log.h"
 #include "lm/keys.h"
 #include "lm/live_bus.h"
+#include "lm/malfunction_bus.h"
 #include "lm/nav.h"
 #include "lm/page.h"
 #include "lm/picture.h"
@@ -122,6 +123,7 @@ struct lm_unit {
     struct lm_unit_weather weather;
     struct lm_exercise exercise;
     struct lm_live_bus live;
+    struct lm_malfunction_bus malfunctions;
 
     struct {
         uint32_t stuck, rivals, disagreements; /* as of the last step: lm/bit.h */

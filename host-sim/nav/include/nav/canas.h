@@ -54,6 +54,8 @@ enum canas_id {
     CANAS_EXERCISE_TIME = 1820, /* likewise, "Exercise clock" */
     CANAS_EXERCISE_RATE = 1821,
     CANAS_EXERCISE_SEED = 1822,
+    CANAS_MALFUNCTION = 1825, /* "Malfunctions" */
+    CANAS_MALFUNCTION_CLEAR = 1826,
     CANAS_ID_COUNT = 2048
 };
 

@@ -1,4 +1,5 @@
-/* Exercise on the bus: frames of its clock as docs/bus.md, "Exercise clock", defines them. */
+/* Exercise on the bus: frames of its clock and of its malfunctions as docs/bus.md, "Exercise
+ * clock" and "Malfunctions", defines them. */
 #ifndef NAV_EXERCISE_H
 #define NAV_EXERCISE_H
 
@@ -6,7 +7,16 @@
 
 #include <stdbool.h>
 
-enum { NAV_EXERCISE_RATES = 8, NAV_EXERCISE_FRAMES = 3 };
+enum { NAV_EXERCISE_RATES = 8, NAV_EXERCISE_FRAMES = 3, NAV_MALFUNCTIONS = 12 };
+
+/* A malfunction, told once a second from from_s until before until_s, and then cleared. */
+struct nav_malfunction {
+    int number;   /* of its kind on the bus */
+    bool is_ramp; /* value[0] is an amount a minute since from_s */
+    int values;   /* 0..2: the kinds number and number + 1 have one each */
+    double value[2];
+    double from_s, until_s;
+};
 
 /* All seconds count from the log's beginning. */
 struct nav_exercise {
@@ -17,11 +27,21 @@ struct nav_exercise {
         double rate, from_s; /* ascending in from_s */
     } rate[NAV_EXERCISE_RATES];
     int rate_count; /* before the first one the rate is 1 */
+    struct nav_malfunction malfunction[NAV_MALFUNCTIONS];
+    int malfunction_count;
 };
 
 /* Take RATE or RATE,FROM_S. False, with *x unchanged, when they are out of range (0..16, after the
  * rate before it) or there are NAV_EXERCISE_RATES already. */
 bool nav_exercise_add_rate(struct nav_exercise *x, const double *value, int count);
+
+/* Take NAME[=VALUE[,VALUE]][@FROM_S[,UNTIL_S]]. NULL; or why not, in static memory, with *x
+ * unchanged. */
+const char *nav_exercise_add_malfunction(struct nav_exercise *x, const char *text);
+
+/* Likewise for the malfunctions: in each second, and once when one ends. */
+int nav_malfunction_frames(const struct nav_exercise *x, struct canas_codes *codes, double now_s,
+                           double period_s, struct canas_frame frames[2 * NAV_MALFUNCTIONS]);
 
 /* What the clock shows at now_s, milliseconds. */
 double nav_exercise_ms(const struct nav_exercise *x, double now_s);

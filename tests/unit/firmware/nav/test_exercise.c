@@ -3,6 +3,8 @@
 #include "check.h"
 #include "lm/exercise.h"
 
+#include <math.h>
+
 enum { S = 1000000 };
 
 struct ear {
