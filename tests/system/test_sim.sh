@@ -69,7 +69,7 @@ check 'lines: 256 a second of ground map, then a patch of 256' between 560 700 "
 check 'none dropped' printed '\(0 dropped\)'
 check 'a picture in thirty frames and the one of the script' test "$(pictures first)" -eq 5
 check 'that the summary counts' test "$(number 'pictures written')" -eq 5
-check 'every frame of the bus was read' test "$(number 'bus:')" -eq "$(wc -l <"$log")"
+check 'every frame of the bus was read' test "$(number 'bus: canas17:')" -eq "$(wc -l <"$log")"
 check 'no command was refused' test "$(number 'commands refused')" -eq 0
 check 'tiles were read, and none failed' between 50 400 "$(number tiles:)"
 check 'the faults are none' printed 'faults: 0 flash reads failed, 0 records corrupt, 0 requests dropped, 0 display'
