@@ -18,7 +18,8 @@ compile = $(eval $(call compile_rule,$(strip $(1)),$(strip $(2)),$(strip $(3)),$
 $(foreach r,$(ROOMS),$(eval $(O)/firmware/$r/%.o: ROOM := $r))
 # What has no loop over cells or pixels: a board that counts its bytes compiles it for size.
 WITHOUT_LOOPS := base/% table/% bus/% nav/% page/% unit/% map/db map/detail map/tile_cache \
-    targets/chips targets/mover targets/signature targets/target targets/target_candidates display/test_pattern
+    targets/chips targets/mover targets/signature targets/target targets/target_candidates targets/target_patch \
+    targets/chip_sector targets/chip_patch radar/patch_rain radar/sector display/test_pattern
 $(foreach f,$(WITHOUT_LOOPS),$(eval $(O)/firmware/$f.o: OPT_core := $(OPT_rest)))
 $(call compile, fixed/,    fixed/,    $$(CFLAGS_fixed) $$(OPT_core))
 $(call compile, firmware/, firmware/, $$(call CFLAGS_room,$$(ROOM)) $$(OPT_core))

@@ -6,8 +6,8 @@ SRC_kernels := $(wildcard firmware/kernels/c/*.c $(if $(filter-out c,$(KERNELS))
 # Beside another folder's, the functions of c/ are called lm_k_..._c (plain.h lists them).
 PLAIN_KERNELS := $(shell sed -n 's/.*(\(lm_k_[a-z0-9_]*\)) .*/\1/p' firmware/kernels/plain.h)
 ifneq ($(KERNELS),c)
-$(O)/firmware/kernels/c/%.o: OPT_core += $(foreach k,$(PLAIN_KERNELS),-D$k=$k_c) \
-    -fno-unroll-loops -fno-tree-vectorize # tails, of less than a vector
+$(O)/firmware/kernels/c/%.o: OPT_core := $(OPT_rest) -fno-unroll-loops -fno-tree-vectorize \
+    $(foreach k,$(PLAIN_KERNELS),-D$k=$k_c) # tails, of less than a vector
 endif
 
 # A run of cells in one tile has four or five groups, in a tile that stands in for another too.
