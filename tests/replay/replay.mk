@@ -16,7 +16,7 @@ $(REPLAY)/test_replay: tests/replay/test_replay.sh $(addprefix $(REPLAY)/,flight
 	@chmod +x $@
 
 .PHONY: replay-arm64
-replay-arm64:
+replay-arm64: | golden-arm64 # makes of one folder, one after the other
 ifeq ($(BOARD),bench-linux)
 	@! command -v aarch64-linux-gnu-gcc >/dev/null || $(call make_board,panel-linux) ARCH=arm64 \
 	    O=build/panel-linux-arm64 build/panel-linux-arm64/bin/tests/replay/flights

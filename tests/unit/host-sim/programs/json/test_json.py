@@ -530,7 +530,7 @@ def sim():
     assert [r["frames"], r["lines"], r["lines_dropped"], r["pictures_written"]] == \
         find(r"^frames (\d+), lines (\d+) \((\d+) dropped\), pictures written (\d+)", text)
     assert [r["bus"]["frames"], r["bus"]["malformed"], r["bus"]["errors"], r["position_jumps"], r["commands_refused"]] == \
-        find(r"^bus: (\d+) frames, (\d+) malformed, (\d+) errors; position jumps (\d+); commands refused (\d+)", text)
+        find(r"^bus: \S+: (\d+) frames, (\d+) malformed, (\d+) errors; position jumps (\d+); commands refused (\d+)", text)
     assert [r["bus"][k] for k in ("values", "not_used", "refused_length", "refused_node", "refused_type",
                                   "refused_not_a_number", "refused_range")] == \
         find(r"^ +(\d+) values, (\d+) frames of other use; refused: (\d+) length, (\d+) node, (\d+) type, (\d+) no number, (\d+) r", text)
@@ -604,7 +604,7 @@ def target_curves():
 def target_materials():
     document, text = run("target", "materials")
     shown = [line.split() for line in text.splitlines() if not line.startswith("#")]
-    assert [[m["name"], *("%g" % v for v in list(m.values())[1:])] for m in document["report"]["materials"]] == shown
+    assert [[m["name"], *(v if isinstance(v, str) else "%g" % v for v in list(m.values())[1:])] for m in document["report"]["materials"]] == shown
 
 
 def target_bench():
