@@ -189,7 +189,8 @@ static bool find_rough(struct rough *r, const struct plane *p, const struct lm_l
     const int64_t dlat = (int32_t)(t->position.latitude - p->position.latitude);
     const int64_t dlon = (int32_t)(t->position.longitude - p->position.longitude);
     const int64_t most = 1 << 25;
-    if (dlat > most || dlat < -most || dlon > 4 * most || dlon < -4 * most) {
+    if (fx_clamp_i64(dlat, -most, most) != dlat ||
+        fx_clamp_i64(dlon, -4 * most, 4 * most) != dlon) {
         return false;
     }
     /* Half the differences in radians, Q15: BAM * pi / 2^32 * 2^15. */

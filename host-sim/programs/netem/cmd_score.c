@@ -52,10 +52,10 @@ static int beside_all(struct nm_experiment *e, const struct nm_samples *samples,
 {
     int result = 0, first = 0, first_by_mse = 0;
     bool *is_first = malloc(2 * ((size_t)samples->count + 1) * sizeof *is_first);
-    bool *is_first_by_mse = is_first + samples->count;
     if (!is_first) {
         return hs_error("scores", NULL, "out of memory");
     }
+    bool *is_first_by_mse = is_first + samples->count;
     memset(is_first, true, 2 * (size_t)samples->count * sizeof *is_first);
     hs_report_array("others");
     for (int i = 0; i < others->count && result == 0; i++) {
