@@ -148,7 +148,7 @@ static bool read_table(struct options *o, struct raw *raw, int argc, char **argv
         {"from", HS_REAL, &raw->from, 0, 9999999, "S",
          "of --replay: show and write pictures from here on; --seconds counts from here", false},
         {"speed", HS_REAL, &raw->speed, 0.015625, 64, "X",
-         "of --replay in the window: 0.5 is half as fast (1)", false},
+         "of --replay in the window: 0.5 is half as fast", false},
         {"replay-anyway", HS_FLAG, &o->is_any_replayed, 0, 0, NULL,
          "replay although image, bus table, radar or version are not those of the recording",
          false},
