@@ -103,5 +103,20 @@ say "Fly past the town once more: sea, moving targets, and the ground map throug
 { echo "0 range 10" && cat host-sim/gallery/modes.script; } >$out/modes.script
 "$bin"/landmass-sim --db $out/scene.lmdb --bus $out/modes.log --script $out/modes.script --png $out/pictures --every 0
 
+say "An exercise: vehicles that only the bus knows, rain, a transmitter that weakens; recorded, and shown again"
+# A convoy along the coast road, and two vehicles that leave the apron.
+convoy=$(awk 'BEGIN { for (i = 0; i < 6; i++) printf "--live %d,4,%.5f,-28.99000,0,18 ", i, 42.005 + i * 0.0012 }')
+apron=$(place airfield | awk '{ for (i = 0; i < 2; i++) printf "--live %d,4,%.5f,%.5f,130,6 ", 10 + i, $1 + 0.001, $2 + i * 0.001 }')
+# shellcheck disable=SC2086 # words
+"$bin"/landmass-nav --straight 42.05,-29.16,90,3000,180 --seconds 40 $convoy $apron --exercise-clock 0 \
+    --rain 42.06,-29.02,3000,30,12 --malfunction weak-transmit=25@20,27 --out $out/exercise.log
+{
+    printf '0 range 10\n1 gmt\n9 picture exercise-gmt\n9 gm\n19 picture exercise-rain\n26 picture exercise-weak\n'
+    printf '30 sar %s 1\n36 picture exercise-patch\n' "$(place airfield)"
+} >$out/exercise.script
+"$bin"/landmass-sim --db $out/scene.lmdb --bus $out/exercise.log --script $out/exercise.script --png $out/pictures \
+    --every 0 --record $out/recording.log
+"$bin"/landmass-sim --db $out/scene.lmdb --replay $out/recording.log --from 35.9 --png $out/replay --every 1
+
 say "Done in $(($(date +%s) - start)) s. Look at:"
 ls $out/scene/preview.png $out/classes.png $out/pictures/*.png

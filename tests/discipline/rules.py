@@ -327,10 +327,13 @@ def resolve(tree, path, name):
     return None
 
 
+RECORDER = "record"  # the one folder of bsp that is no board: it stands between any board's ports and the unit
+
+
 def includes_upwards(tree):
-    """A layer includes itself and the layers below, a board's folder no other board's, and the two lowest layers
-    four headers of the compiler; a kernel's folder that of its architecture. A driver may bring libraries of its own
-    board."""
+    """A layer includes itself and the layers below, a board's folder no other board's but the recorder's, and the two
+    lowest layers four headers of the compiler; a kernel's folder that of its architecture. A driver may bring libraries
+    of its own board."""
     bad = []
     for level, layer in enumerate(LAYERS):
         for path in tree.sources(layer):
@@ -346,7 +349,8 @@ def includes_upwards(tree):
                     bad.append(f'{place}: includes "{name}", which is in no layer below')
                 elif target is not None and target.parts[0] not in LAYERS[: level + 1]:
                     bad.append(f"{place}: includes {target}")
-                elif target is not None and target.parts[0] == "bsp" and target.parts[:2] != path.parts[:2]:
+                elif target is not None and target.parts[0] == "bsp" and target.parts[1] != RECORDER and \
+                        target.parts[:2] != path.parts[:2]:
                     bad.append(f"{place}: includes another board's {target}")
     return bad
 

@@ -77,6 +77,8 @@ PLANTED = [
      "drivers/bad.c", '#include "../bsp/here/four.h"\n'),
     ("a board including another board is seen", rules.includes_upwards, "another board's bsp/other/five.h",
      "bsp/here/bad.c", '#include "../other/five.h"\n'),
+    ("the recorder including a board is seen", rules.includes_upwards, "another board's bsp/other/five.h",
+     "bsp/record/bad.c", '#include "../other/five.h"\n'),
     ("an include path too many in the Makefile is seen", rules.open_doors,
      'fixed: could include "lm/two.h"', None, None),
     ("a header that needs another one first is seen", rules.open_doors, '"lm/bad.h" does not compile by itself',
