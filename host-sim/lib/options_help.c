@@ -129,6 +129,8 @@ static void print_range(const struct hs_option *o, const char *indent)
         printf("%sRange %g to %g.\n", indent, o->low, o->high);
     } else if (o->kind == HS_REAL) {
         printf("%sRange %g to %g; default %g.\n", indent, o->low, o->high, *(double *)o->target);
+    } else if (o->kind == HS_INTEGER && (double)*(long *)o->target < o->low) {
+        printf("%sRange %.0f to %.0f.\n", indent, o->low, o->high);
     } else if (o->kind == HS_INTEGER) {
         printf("%sRange %.0f to %.0f; default %ld.\n", indent, o->low, o->high, *(long *)o->target);
     } else if (o->kind == HS_CHOICE && o->value_name && *(int *)o->target >= 0) {
