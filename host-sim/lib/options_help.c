@@ -4,7 +4,6 @@
 #include "lm/version.h"
 #include "manual.h"
 
-#include <math.h>
 #include <stdio.h>
 #include <string.h>
 
@@ -125,7 +124,7 @@ static void print_rows(const struct table *t, const struct hs_option *o, const c
 /* "Range 1 to 89; default 25." in one line, or nothing. */
 static void print_range(const struct hs_option *o, const char *indent)
 {
-    if (o->kind == HS_REAL && isnan(*(double *)o->target)) {
+    if (o->kind == HS_REAL && !(*(double *)o->target >= o->low)) {
         printf("%sRange %g to %g.\n", indent, o->low, o->high);
     } else if (o->kind == HS_REAL) {
         printf("%sRange %g to %g; default %g.\n", indent, o->low, o->high, *(double *)o->target);

@@ -31,7 +31,7 @@ enum hs_option_kind {
     HS_INPUTS,  /* struct hs_list of such */
     HS_OUTPUT,  /* const char *: a file that is written; claimed (hs/atomic_file.h) */
     HS_FOLDER,  /* const char *: a folder that is written to, and made if need be */
-    HS_REAL,    /* double within low..high; NAN before: there is no default */
+    HS_REAL,    /* double within low..high; NAN or below low before: there is no default */
     HS_INTEGER, /* long within low..high; below low before: there is no default */
     HS_CHOICE,  /* int: which of the words in value_name, "csv|gpx|igc", counted from 0; -1 before:
                    there is no default */
