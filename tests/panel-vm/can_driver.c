@@ -11,6 +11,7 @@
 #include "drv/can_socket.h"
 #include "lm/bus.h"
 #include "lm/bus_filters.h"
+#include "lm/canas_control.h"
 #include "lm/canas_service.h"
 
 #include <errno.h>
@@ -150,7 +151,9 @@ static bool is_wanted(canid_t id)
     drv_can_socket_convert(&raw, &frame);
     lm_bus_take(&bus, &frame, events);
     const uint32_t *o = bus.count.outcome;
-    return id == LM_CANAS_REQUEST_ID ||
+    const bool is_control =
+        id > LM_CONTROL_ID + LM_CONTROL_ITEM_STEP && id < LM_CONTROL_ID + LM_CONTROL_ITEMS;
+    return id == LM_CANAS_REQUEST_ID || is_control ||
            !(o[LM_BUS_NOT_DATA] || o[LM_BUS_FOREIGN] || o[LM_BUS_OTHER_CHANNEL] ||
              o[LM_BUS_SERVICE] || o[LM_BUS_UNUSED]);
 }

@@ -14,8 +14,7 @@ enum { LM_BUS_FILTERS_MAX = 2 * LM_BUS_ROWS_MAX + LM_CONTROL_ITEMS };
 /* Write the filters of a profile, none of them twice, and return how many there are:
  *
  * - CANaerospace: for each row its 11-bit identifier, and its 29-bit one on any redundancy channel
- *   below LM_BUS_CHANNELS; requests of node services, and
- *   control frames (lm/canas_control.h).
+ *   below LM_BUS_CHANNELS; requests of node services, and control frames (lm/canas_control.h).
  * - packed: for each row its identifier and mask.
  *
  * All frames that the decoder takes pass. Two kinds of frames pass and are not taken: 29-bit
@@ -27,9 +26,8 @@ uint32_t lm_bus_filters(const struct lm_bus_profile *profile,
 
 /* True if a frame could be taken by both profiles. They must then not be heard on one interface:
  * its value would count twice, or as two things. *id, which may be NULL, is then an identifier that
- * both take. Requests of node services and controls,
- * which every CANaerospace has, do not count. Cost: as above.
- */
+ * both take. Requests of node services and controls, which every CANaerospace has, do not count.
+ * Cost: as above. */
 bool lm_bus_profiles_clash(const struct lm_bus_profile *a, const struct lm_bus_profile *b,
                            uint32_t *id);
 
