@@ -100,12 +100,19 @@ static bool has_no_rival(const struct lm_bus_profile *p, uint32_t index)
     return !is_packed || in_frame <= LM_BUS_EVENTS;
 }
 
+/* A count, which is kept as it comes, may have any 32 bits. */
+static bool is_range_sound(const struct lm_bus_row *row)
+{
+    const struct lm_bus_scale *scale = lm_bus_scale_of((enum lm_bus_field)row->field);
+    const bool is_count = scale->frac_bits == 0 && scale->multiplier == scale->divisor;
+    return row->low < row->high &&
+           (is_count || (row->low >= -RANGE_MOST && row->high <= RANGE_MOST));
+}
+
 static bool is_row_sound(const struct lm_bus_profile *p, uint32_t index)
 {
     const struct lm_bus_row *row = &p->rows[index];
-    const bool is_common = row->field < LM_BUS_FIELDS && row->low < row->high &&
-                           row->low >= -RANGE_MOST && row->high <= RANGE_MOST &&
-                           are_ages_sound(row);
+    const bool is_common = row->field < LM_BUS_FIELDS && is_range_sound(row) && are_ages_sound(row);
     return is_common && (p->framing == LM_BUS_PACKED ? is_packed_sound(row)
                                                      : is_canas_sound(row, p->are_types_assumed));
 }

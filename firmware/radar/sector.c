@@ -425,7 +425,7 @@ static void find_targets(struct lm_sector *s, struct lm_tile_cache *tiles, fx_ba
                                           .time_us = s->platform.time_us,
                                           .tiles = tiles,
                                           .lod = s->lod};
-    if (s->targets->live && s->targets->live->count != 0) {
+    if (lm_target_set_is_live(s->targets)) {
         find_live(s, &query, azimuth);
     }
     if (!lm_target_candidates_refresh(&s->candidates, s->targets, &query) ||

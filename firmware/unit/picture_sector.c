@@ -191,7 +191,7 @@ static bool sample_ahead(struct lm_picture *p, uint64_t now_us, uint32_t *azimut
     if (s->samples != samples) {
         lm_coverage_add(&p->coverage, &p->line.ground, s->grid.cells);
         /* Looking through the live targets and drawing them takes the time of composing. */
-        p->is_step_spent |= s->targets->live->count != 0;
+        p->is_step_spent |= lm_target_set_is_live(s->targets);
     }
     return has_all;
 }

@@ -23,10 +23,16 @@ struct lm_target_set {
     const struct lm_live *live; /* borrowed; NULL: none */
 };
 
+/* True if any of the set is a live one. */
+static inline bool lm_target_set_is_live(const struct lm_target_set *set)
+{
+    return set->live && set->live->count != 0;
+}
+
 /* True if there is any target at present. */
 static inline bool lm_target_set_has_any(const struct lm_target_set *set)
 {
-    return set->count != 0 || (set->live && set->live->count != 0);
+    return set->count != 0 || lm_target_set_is_live(set);
 }
 
 /* What a target returns, if it has no scatterers: a copy of its record's members. */

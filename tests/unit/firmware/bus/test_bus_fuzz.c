@@ -79,7 +79,10 @@ TEST(every_random_frame_is_accounted_for_and_the_ownship_stays_possible)
     struct lm_bus *bus = malloc(sizeof *bus);
     struct lm_nav *nav = malloc(sizeof *nav);
     struct lm_weather_bus *weather = calloc(1, sizeof *weather);
+    uint8_t nodes[LM_BUS_NODE_BYTES] = {0};
+    memset(nodes, 0xff, sizeof nodes / 2); /* half of all nodes are heard */
     lm_bus_init(bus, &lm_bus_canas17);
+    lm_bus_hear_only(bus, nodes);
     lm_nav_init(nav);
     uint64_t now_us = 0;
     for (int i = 0; i < 400000; i++) {
