@@ -99,13 +99,14 @@ const char *lm_flag_word(uint32_t number)
     return flag_words[number < LM_FLAGS ? number : 0];
 }
 
-static void draw_warning(const struct lm_glass *g, int32_t row, const char *words)
+/* Write a warning in a box, at row `row` of rows of so many dots. */
+static void draw_warning(const struct lm_glass *g, int32_t row, int32_t row_dots, const char *words)
 {
     const struct lm_pen pen = lm_glass_pen(g, g->palette->warning);
     const int32_t dot = pen.dot_px, width = lm_text_width(&pen, words);
     const int32_t x = g->frame->left_px + (g->frame->width_px - width) / 2;
     const int32_t first = fx_max_i32(g->frame->top_px, LM_BELOW_TOP_ROW_DOTS * dot) + 3 * dot;
-    const int32_t y = first + row * (lm_row_px(&pen) + 4 * dot);
+    const int32_t y = first + row * row_dots * dot;
     const int32_t left = x - 3 * dot, right = x + width + 2 * dot;
     const int32_t top = y - 3 * dot, bottom = y + (LM_FONT_HEIGHT + 2) * dot;
     struct lm_pen ground = pen;
@@ -116,22 +117,33 @@ static void draw_warning(const struct lm_glass *g, int32_t row, const char *word
     lm_draw_text(&pen, x, y, words);
 }
 
+/* The reason that is written below the word of a flag, or "". */
+static const char *reason_of(uint32_t flag, const struct lm_warning_reasons *reasons)
+{
+    return flag == LM_FLAG_DB       ? reasons->database
+           : flag == LM_FLAG_UNABLE ? reasons->unable
+           : flag == LM_FLAG_SENDER ? reasons->sender
+                                    : "";
+}
+
+/* Below the top of the frame a glass has 207 dots: 15 rows a little apart, or 20 close together. */
 void lm_overlay_warnings(const struct lm_glass *g, uint32_t flags,
                          const struct lm_warning_reasons *reasons)
 {
-    int32_t row = 0;
+    enum { APART = 13, CLOSE = 10, ROWS_APART = 15 };
+    const char *words[2 * LM_FLAGS];
+    int32_t rows = 0;
     for (uint32_t i = 0; i < LM_FLAGS; i++) {
-        const uint32_t flag = flags & 1u << i;
-        const char *const why = flag == LM_FLAG_DB       ? reasons->database
-                                : flag == LM_FLAG_UNABLE ? reasons->unable
-                                : flag == LM_FLAG_SENDER ? reasons->sender
-                                                         : "";
-        if (flag) {
-            draw_warning(g, row++, flag_words[i]);
+        const char *const why = reason_of(1u << i, reasons);
+        if (flags & 1u << i) {
+            words[rows++] = flag_words[i];
         }
         if (*why) {
-            draw_warning(g, row++, why);
+            words[rows++] = why;
         }
+    }
+    for (int32_t row = 0; row < rows; row++) {
+        draw_warning(g, row, rows > ROWS_APART ? CLOSE : APART, words[row]);
     }
 }
 
