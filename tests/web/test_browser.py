@@ -137,7 +137,7 @@ def the_cursor_moves_and_designate_draws_a_patch(b):
     chain.perform()
     b.until(f"landmass.unit.value('cursorLongitude') > {before}")
     assert b.ask("landmass.deflection") == [0, 0]
-    b.ask("landmass.patch(46, 11, 5) && 0")
+    b.ask("landmass.patch(46.05, 11.15, 5) && 0")
     b.until("landmass.unit.value('mode') === 3")
     b.find("drop").click()
     b.until("landmass.unit.value('mode') !== 3")
@@ -189,8 +189,7 @@ def a_live_bus_flies(b):
         b.find("socket").send_keys(f"ws://127.0.0.1:{port}")
         b.find("connect").click()
         b.until("document.getElementById('message').textContent.includes('connected')")
-        time.sleep(1.5)
-        assert b.ask("landmass.unit.warnings()") == [], b.ask("landmass.unit.warnings()")
+        b.until("landmass.bus.constructor.name === 'SocketBus' && landmass.unit.warnings().length === 0")
         assert b.ask("landmass.bus.refused") == 0
     finally:
         child.kill()

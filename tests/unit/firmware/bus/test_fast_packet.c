@@ -19,7 +19,7 @@ static struct lm_can_frame part(uint32_t id, uint8_t sequence, uint32_t length, 
 {
     struct lm_can_frame f = {.id = id, .is_extended = true, .length = 8, .time_us = 1000};
     memset(f.data, 0xff, sizeof f.data);
-    f.data[0] = (uint8_t)(sequence << 5 | number);
+    f.data[0] = (uint8_t)((uint32_t)sequence << 5 | number);
     const uint32_t head = number == 0 ? 2 : 1;
     f.data[1] = number == 0 ? (uint8_t)length : 0xff;
     for (uint32_t i = head; i < 8; i++) {

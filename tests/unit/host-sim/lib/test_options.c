@@ -159,8 +159,8 @@ TEST(the_help_names_every_option_with_range_and_default)
                                         "Range 0 to 9; default 7.\n",
                                         "  --format csv|gpx|igc\n",
                                         "Default gpx.\n",
-                                        "  --axis y|z\n      which axis\n      Needs --into or "
-                                        "--format csv.\n",
+                                        "  --axis y|z\n      which axis\n",
+                                        "Needs --into or --format csv.\n",
                                         "Cannot be given together with --pair.\n",
                                         "  --version\n"};
     for (size_t i = 0; i < sizeof parts / sizeof parts[0]; i++) {
