@@ -117,7 +117,7 @@ static void draw_warning(const struct lm_glass *g, int32_t row, int32_t row_dots
     lm_draw_text(&pen, x, y, words);
 }
 
-/* The reason that is written below the word of a flag, or "". */
+/* The reason that is written below the word of a flag, or "", as for no flag. */
 static const char *reason_of(uint32_t flag, const struct lm_warning_reasons *reasons)
 {
     return flag == LM_FLAG_DB       ? reasons->database
@@ -134,7 +134,7 @@ void lm_overlay_warnings(const struct lm_glass *g, uint32_t flags,
     const char *words[2 * LM_FLAGS];
     int32_t rows = 0;
     for (uint32_t i = 0; i < LM_FLAGS; i++) {
-        const char *const why = reason_of(1u << i, reasons);
+        const char *const why = reason_of(flags & 1u << i, reasons);
         if (flags & 1u << i) {
             words[rows++] = flag_words[i];
         }
