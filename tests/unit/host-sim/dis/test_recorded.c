@@ -45,7 +45,9 @@ static bool next_state(struct walk *w, struct dis_entity_state *s)
             }
             continue;
         }
-        w->broken[fault] += step == DIS_STEP_BROKEN;
+        if (step == DIS_STEP_BROKEN) {
+            w->broken[fault]++;
+        }
         if (dis_capture_next(&w->capture, &w->packet) != 1) {
             return false;
         }
