@@ -61,9 +61,9 @@ static bool is_packed_sound(const struct lm_bus_row *row)
 static bool is_canas_sound(const struct lm_bus_row *row, bool are_types_assumed)
 {
     bool fits = row->types != 0;
-    for (uint8_t type = 0; type < LM_CANAS_TYPES; type++) {
+    for (uint32_t type = 0; type < LM_CANAS_TYPES; type++) {
         fits = fits && ((row->types >> type & 1) == 0 ||
-                        lm_canas_fits((enum lm_bus_field)row->field, type));
+                        lm_canas_fits((enum lm_bus_field)row->field, (uint8_t)type));
     }
     return fits && row->id >= LM_CANAS_ROW_FIRST && row->id <= LM_CANAS_ROW_LAST &&
            row->per_unit >= 1 && row->per_unit <= 1000000000 &&

@@ -239,7 +239,7 @@ static void take_value(struct lm_canas_control *c, const struct lm_can_frame *fr
         begin_set(c, frame, item);
     }
     struct lm_control_words *w = &c->set.words;
-    if (item >= w->end) {
+    if (item < w->first || item >= w->end) {
         c->count.bad++; /* a value that this control does not have */
         c->set.missing = 0;
         return;
