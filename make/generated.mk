@@ -48,4 +48,13 @@ $(GEN)/firmware/bus/bus_generic.c: $(GEN)/bin/bus_table $(BUS_TABLE) $(GEN)/bus_
 $(GEN)/bus_table.name: always
 	@mkdir -p $(@D)
 	@echo '$(BUS_TABLE)' | cmp -s - $@ || echo '$(BUS_TABLE)' >$@
+
+# The identity of the build, which recordings carry: a hash of the sources that decide the pictures, in the order of their
+# names. It is the same for every board and compiler, with git or without.
+RECORD_SOURCES := $(sort $(wildcard bsp/record/*.c) bsp/record/build_identity.c)
+$(GEN)/bsp/record/build_identity.c: always
+	@mkdir -p $(@D)
+	@hash=$$(find firmware fixed host-sim/tables -name '*.[ch]' | LC_ALL=C sort | xargs sha256sum | sha256sum | cut -c1-12); \
+	    { echo '#include "record.h"'; echo; echo "const char record_build[] = \"$$hash\";"; } >$@.new; \
+	    cmp -s $@.new $@ && rm $@.new || mv $@.new $@
 .PHONY: always

@@ -18,10 +18,10 @@ HOST_HEADERS_firmware.h := $(HOST_HEADERS_firmware)
 HOST_HEADERS_drivers    := -Idrivers/include
 HOST_HEADERS_bench      := -Ibsp/bench-linux -Ibsp/record
 LIB_bench := $(O)/libbench.a
-$(LIB_bench): $(call objs,$(wildcard bsp/bench-linux/*.c bsp/record/*.c))
+$(LIB_bench): $(call objs,$(wildcard bsp/bench-linux/*.c) $(RECORD_SOURCES))
 # Recorder and replay, which boards with files share.
 LIB_record := $(O)/librecord.a
-$(call archive, $(LIB_record), $(wildcard bsp/record/*.c) drivers/can/can_log.c)
+$(call archive, $(LIB_record), $(RECORD_SOURCES) drivers/can/can_log.c)
 
 # The libraries $(1) and all below them, in the order of linking.
 host_needs    = $(filter $(1) $(foreach l,$(1),$(HOST_NEEDS_$l)),$(HOST_LIBS))

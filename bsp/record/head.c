@@ -39,11 +39,11 @@ static uint32_t add(uint32_t crc, uint64_t number)
 
 static uint32_t add_packing(uint32_t crc, const struct lm_bus_packing *p)
 {
-    const uint64_t numbers[] = {p->mask,        p->bits.first,           p->bits.count,
-                                p->match.first, p->match.count,          p->match_value,
-                                p->type,        p->is_little_endian,     p->has_none,
-                                p->none,        (uint64_t)p->multiplier, p->shift,
-                                p->frac_bits,   (uint64_t)p->bias};
+    const uint64_t numbers[] = {
+        p->mask,        p->bits.first,  p->bits.count,    p->match.first,
+        p->match.count, p->match_value, p->type,          p->is_little_endian,
+        p->has_none,    p->is_fast,     p->none,          (uint64_t)p->multiplier,
+        p->shift,       p->frac_bits,   (uint64_t)p->bias};
     for (size_t i = 0; i < sizeof numbers / sizeof *numbers; i++) {
         crc = add(crc, numbers[i]);
     }
@@ -85,6 +85,7 @@ static uint32_t crc_of_tables(const struct lm_board *board)
     for (uint32_t i = 0; i < LM_BUS_TABLES_MORE; i++) {
         if (board->tables[i].profile) {
             crc = add(crc, crc_of_profile(board->tables[i].profile));
+            crc = add(crc, board->tables[i].interface);
         }
     }
     return crc;
@@ -123,7 +124,7 @@ static uint32_t switches_of(const struct lm_board *b)
 {
     const bool bits[] = {b->is_heading_magnetic,     b->tells_reports,       b->obeys_controls,
                          b->options.is_sector_whole, b->options.has_heading, b->options.has_strobe,
-                         b->options.has_borders,     b->bus_profile != NULL};
+                         b->options.has_borders,     b->bus_profile != NULL, b->can_2 != NULL};
     uint32_t word = 0;
     for (uint32_t i = 0; i < sizeof bits / sizeof *bits; i++) {
         word |= (uint32_t)bits[i] << i;
@@ -153,18 +154,24 @@ void record_describe(struct record_head *head, const struct lm_board *board, uin
     copy_word(head->profile, sizeof head->profile,
               board->bus_profile ? board->bus_profile->name : NULL);
     copy_word(head->restart, sizeof head->restart, board->restart);
+    copy_word(head->build, sizeof head->build, record_build);
+    head->has_nodes = board->bus_nodes != NULL;
+    if (head->has_nodes) {
+        memcpy(head->nodes, board->bus_nodes, sizeof head->nodes);
+    }
 }
 
 size_t record_head_write(const struct record_head *h, char *text, size_t room)
 {
-    const int length = snprintf(
-        text, room,
-        "%d %s %" PRIu64 " %" PRIu64 " %08" PRIx32 " %s %08" PRIx32 " %08" PRIx32 " %" PRIu32
-        " %" PRIu32 " %" PRIu32 " %" PRIu32 " %" PRIu32 " %" PRIu32 " %" PRIu32 " %" PRIu32
-        " %" PRIu32 " %s",
-        RECORD_VERSION, h->version, h->zero_us, h->image_bytes, h->image_crc, h->profile,
-        h->profile_crc, h->radar_crc, h->width_px, h->height_px, h->tile_slots, h->glass_step_px,
-        h->noise_seed, h->flash_poll_limit, h->node, h->hardware_revision, h->switches, h->restart);
+    const int length =
+        snprintf(text, room,
+                 "%d %s %" PRIu64 " %" PRIu64 " %08" PRIx32 " %s %08" PRIx32 " %08" PRIx32
+                 " %" PRIu32 " %" PRIu32 " %" PRIu32 " %" PRIu32 " %" PRIu32 " %" PRIu32 " %" PRIu32
+                 " %" PRIu32 " %" PRIu32 " %s %s",
+                 RECORD_VERSION, h->version, h->zero_us, h->image_bytes, h->image_crc, h->profile,
+                 h->profile_crc, h->radar_crc, h->width_px, h->height_px, h->tile_slots,
+                 h->glass_step_px, h->noise_seed, h->flash_poll_limit, h->node,
+                 h->hardware_revision, h->switches, h->restart, h->build);
     return length < 0 || (size_t)length >= room ? 0 : (size_t)length;
 }
 
@@ -176,12 +183,17 @@ bool record_head_read(struct record_head *h, const char *text)
         sscanf(text,
                "%9d %15s %19" SCNu64 " %19" SCNu64 " %8" SCNx32 " %31s %8" SCNx32 " %8" SCNx32
                " %9" SCNu32 " %9" SCNu32 " %9" SCNu32 " %9" SCNu32 " %10" SCNu32 " %9" SCNu32
-               " %9" SCNu32 " %9" SCNu32 " %9" SCNu32 " %23s",
+               " %9" SCNu32 " %9" SCNu32 " %9" SCNu32 " %23s %15s",
                &version, h->version, &h->zero_us, &h->image_bytes, &h->image_crc, h->profile,
                &h->profile_crc, &h->radar_crc, &h->width_px, &h->height_px, &h->tile_slots,
                &h->glass_step_px, &h->noise_seed, &h->flash_poll_limit, &h->node,
-               &h->hardware_revision, &h->switches, h->restart);
-    return got == 18 && version == RECORD_VERSION && h->width_px >= 256 && h->width_px <= 1024 &&
+               &h->hardware_revision, &h->switches, h->restart, h->build);
+    for (char *c = h->restart; *c != '\0'; c++) {
+        if (*c == '_') {
+            *c = ' '; /* a cause is words of capitals */
+        }
+    }
+    return got == 19 && version == RECORD_VERSION && h->width_px >= 256 && h->width_px <= 1024 &&
            h->height_px >= 256 && h->height_px <= 1024 && h->tile_slots <= LM_TILE_SLOTS_MAX &&
            h->node <= 255 && h->hardware_revision <= 255;
 }

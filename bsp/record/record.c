@@ -76,7 +76,9 @@ static void put_blob(struct recorder *r, uint32_t kind, const uint8_t *bytes, ui
     uint8_t whole[RECORD_BLOB_MAX + 1];
     put_pending(r);
     whole[0] = (uint8_t)count;
-    memcpy(whole + 1, bytes, count);
+    if (count > 0) {
+        memcpy(whole + 1, bytes, count);
+    }
     for (uint32_t at = 0; at <= count; at += 8) {
         const uint32_t left = count + 1 - at;
         put_own(r, r->now_us, kind, whole + at, left < 8 ? left : 8);
@@ -132,17 +134,28 @@ static int read_poll(void *ctx)
 
 /* ---- bus ---- */
 
-static int receive(void *ctx, struct lm_can_frame *frame)
+/* From interface 0 or 1. */
+static int hear(struct recorder *r, uint32_t interface, struct lm_can_frame *frame)
 {
-    struct recorder *r = ctx;
-    const int status = r->can->receive(r->can->ctx, frame);
+    const struct lm_can *can = interface == 0 ? r->can : r->can_2;
+    const int status = can->receive(can->ctx, frame);
     if (status == 1) {
         put_pending(r);
-        put_line(r, frame->time_us, RECORD_HEARD, frame);
+        put_line(r, frame->time_us, interface == 0 ? RECORD_HEARD : RECORD_HEARD_2, frame);
     } else if (status < 0) {
-        put_event(r, RECORD_BUS_DOWN, status, 0);
+        put_event(r, RECORD_BUS_DOWN, status, interface);
     }
     return status;
+}
+
+static int receive(void *ctx, struct lm_can_frame *frame)
+{
+    return hear(ctx, 0, frame);
+}
+
+static int receive_2(void *ctx, struct lm_can_frame *frame)
+{
+    return hear(ctx, 1, frame);
 }
 
 static int send_frame(void *ctx, const struct lm_can_frame *frame)
@@ -238,6 +251,7 @@ static void wrap(struct recorder *r, struct lm_board *board)
 {
     r->flash = board->flash;
     r->can = board->can;
+    r->can_2 = board->can_2;
     r->controls = board->controls;
     r->display = board->display;
     r->flash_of_unit = (struct lm_flash){.ctx = r,
@@ -245,6 +259,7 @@ static void wrap(struct recorder *r, struct lm_board *board)
                                          .read_start = read_start,
                                          .read_poll = read_poll};
     r->can_of_unit = (struct lm_can){.ctx = r, .receive = receive};
+    r->can_2_of_unit = (struct lm_can){.ctx = r, .receive = receive_2};
     r->controls_of_unit =
         (struct lm_controls){.ctx = r, .next = next_control, .refused = tell_refusal};
     r->display_of_unit = (struct lm_display){.ctx = r,
@@ -254,6 +269,7 @@ static void wrap(struct recorder *r, struct lm_board *board)
                                              .present = present};
     board->flash = &r->flash_of_unit;
     board->can = &r->can_of_unit;
+    board->can_2 = r->can_2 ? &r->can_2_of_unit : NULL;
     board->controls = &r->controls_of_unit;
     board->display = &r->display_of_unit;
 }
@@ -271,6 +287,9 @@ void record_begin(struct recorder *r, const struct record_sink *sink, struct lm_
     wrap(r, board);
     put_blob(r, RECORD_HEAD, (const uint8_t *)text,
              (uint32_t)record_head_write(&head, text, sizeof text));
+    if (head.has_nodes) {
+        put_blob(r, RECORD_NODES, head.nodes, sizeof head.nodes);
+    }
 }
 
 /* A step's time is the pause since the one before, less the usual one, folded to a small number:
@@ -310,6 +329,27 @@ void record_flush(struct recorder *r)
 void record_part(struct recorder *r, uint32_t number)
 {
     put_event(r, RECORD_PART, 0, number);
+}
+
+void record_restart(struct recorder *r, const char *restart)
+{
+    const size_t length = restart ? strlen(restart) : 0;
+    put_blob(r, RECORD_RESTART, (const uint8_t *)restart,
+             (uint32_t)(length < RECORD_BLOB_MAX ? length : RECORD_BLOB_MAX));
+}
+
+void record_cease(struct recorder *r, enum record_reason reason, uint32_t lines_lost)
+{
+    put_event(r, RECORD_CEASED, (int)reason, lines_lost);
+}
+
+const char *record_reason_words(uint32_t reason)
+{
+    static const char *const words[RECORD_REASONS] = {
+        [RECORD_FULL] = "it is as long as it may be",
+        [RECORD_BEHIND] = "lines came faster than they could be written",
+        [RECORD_BROKEN] = "it could not be written"};
+    return reason < RECORD_REASONS && words[reason] ? words[reason] : "for a reason of its own";
 }
 
 void record_end(struct recorder *r)

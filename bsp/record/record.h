@@ -18,7 +18,7 @@
 #include "lm/unit.h"
 
 enum {
-    RECORD_VERSION = 1,
+    RECORD_VERSION = 2,
     RECORD_ID = 0x1F4C4D00,  /* identifier of the recorder's own frames, of 29 bits, plus one of: */
     RECORD_HEAD = 0,         /* blob: the head, a text */
     RECORD_STEPS = 1,        /* times of steps */
@@ -27,7 +27,7 @@ enum {
     RECORD_READ_FAILED = 4,  /* one that ended badly */
     RECORD_READ_REFUSED = 5, /* one that could not be started */
     RECORD_WAITS = 6,        /* polls of a read at the start that found it under way */
-    RECORD_BUS_DOWN = 7,     /* the bus answered that it is down */
+    RECORD_BUS_DOWN = 7,     /* an interface answered that it is down: which */
     RECORD_UNSENT = 8,       /* a frame that the bus did not take: its answer */
     RECORD_ACQUIRE = 9,      /* what the display answers from now on, and the age of its buffers */
     RECORD_PRESENT = 10,     /* the same of pictures presented */
@@ -35,13 +35,25 @@ enum {
     RECORD_PART = 12,        /* a part of a recording begins: its number */
     RECORD_END = 13,         /* the recording ends in good order */
     RECORD_VOICE = 14, /* whether the bus can be sent to, from this step on; not before the first */
+    RECORD_NODES = 15, /* blob: the nodes that are heard, where not all are */
+    RECORD_RESTART = 16, /* blob: the cause of the restart, where it is learnt after the start */
+    RECORD_CEASED = 17,  /* the recorder gave up here, and the unit flew on: why, lines lost */
     RECORD_KINDS
 };
 
 /* Interfaces of the lines: frames heard and sent, and the recorder's own. */
-#define RECORD_HEARD "can0"
-#define RECORD_SENT  "sent"
-#define RECORD_OWN   "unit"
+#define RECORD_HEARD   "can0"
+#define RECORD_HEARD_2 "can1"
+#define RECORD_SENT    "sent"
+#define RECORD_OWN     "unit"
+
+/* Why a recorder gave up. */
+enum record_reason {
+    RECORD_FULL = 1, /* the recording is as long as it may be */
+    RECORD_BEHIND,   /* lines came faster than they could be written */
+    RECORD_BROKEN,   /* they cannot be written */
+    RECORD_REASONS
+};
 
 enum {
     RECORD_BLOB_MAX = 255,
@@ -56,6 +68,10 @@ struct record_sink {
     void (*put)(void *ctx, const char *line, size_t bytes);
 };
 
+/* Identity of this build: a hash of the sources that decide the pictures, 12 hexadecimal digits.
+ * The same on every board. */
+extern const char record_build[];
+
 /* What a recording says of itself. */
 struct record_head {
     char version[16];     /* of the firmware */
@@ -69,20 +85,26 @@ struct record_head {
     uint32_t tile_slots, glass_step_px, noise_seed, flash_poll_limit;
     uint32_t node, hardware_revision;
     uint32_t switches; /* bits: magnetic, reports, obeys, whole, heading, strobe, borders,
-                          knows_profile */
-    char restart[24];  /* "-": none; blanks as underscores */
+                          knows_profile, has a second interface */
+    char restart[24];  /* "-": none */
+    char build[16];    /* record_build of the program that recorded */
+    /* Not a word of the head, but a line below it. */
+    bool has_nodes;
+    uint8_t nodes[LM_BUS_NODE_BYTES]; /* that are heard; without has_nodes all are */
 };
+
+enum { RECORD_HAS_SECOND = 1u << 8 }; /* of the switches */
 
 /* Recorder; the caller owns it, and it must not move while the unit runs. */
 struct recorder {
     struct record_sink sink;
     /* The board's ports, borrowed, and those that the unit is given. */
     const struct lm_flash *flash;
-    const struct lm_can *can;
+    const struct lm_can *can, *can_2;
     const struct lm_controls *controls;
     const struct lm_display *display;
     struct lm_flash flash_of_unit;
-    struct lm_can can_of_unit;
+    struct lm_can can_of_unit, can_2_of_unit;
     struct lm_controls controls_of_unit;
     struct lm_display display_of_unit;
 
@@ -128,6 +150,16 @@ void record_flush(struct recorder *r);
 
 /* Write that part `number` begins here. Call record_flush before. */
 void record_part(struct recorder *r, uint32_t number);
+
+/* The cause of the board's restart, which was not in *board yet when the recording began. NULL:
+ * power was switched on. */
+void record_restart(struct recorder *r, const char *restart);
+
+/* The last line of a recording that goes no further, though the unit does. */
+void record_cease(struct recorder *r, enum record_reason reason, uint32_t lines_lost);
+
+/* Why a recorder gave up, in words: "it is as long as it may be". */
+const char *record_reason_words(uint32_t reason);
 
 /* The last line. */
 void record_end(struct recorder *r);

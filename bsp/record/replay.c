@@ -77,8 +77,9 @@ static bool read_line(struct replay *p, struct replay_event *e)
     p->line++;
     const char *end = strchr(line, '\n');
     if (!end) {
-        p->count.torn += feof(p->file) != 0;
-        if (!feof(p->file)) {
+        const bool is_torn = feof(p->file) || line[0] == '\0'; /* zeros: the power was cut */
+        p->count.torn += is_torn;
+        if (!is_torn) {
             stop(p, "%s line %u: no line of a recording", p->path, p->line);
         }
         return false;
@@ -91,7 +92,10 @@ static bool read_line(struct replay *p, struct replay_event *e)
              cause ? cause : "the recorder writes no such frame");
         return false;
     }
-    e->kind = is_own ? REPLAY_OWN : is_interface(line, RECORD_SENT) ? REPLAY_SENT : REPLAY_HEARD;
+    e->kind = is_own                               ? REPLAY_OWN
+              : is_interface(line, RECORD_SENT)    ? REPLAY_SENT
+              : is_interface(line, RECORD_HEARD_2) ? REPLAY_HEARD_2
+                                                   : REPLAY_HEARD;
     e->frame.id -= is_own ? RECORD_ID : 0;
     e->frame.time_us -= p->head.zero_us; /* of a frame that is heard, its arrival */
     return true;
@@ -140,11 +144,38 @@ static bool take_mark(struct replay *p)
         }
         return true;
     }
-    if (f->id == RECORD_END) {
+    if (f->id == RECORD_END || f->id == RECORD_CEASED) {
         p->has_ended = true;
+        p->ceased = f->id == RECORD_CEASED ? f->data[0] : 0;
         p->next.kind = REPLAY_OVER;
     }
     return false;
+}
+
+/* A blob that is a setting of the board. True if it is one. */
+static bool take_setting(struct replay *p)
+{
+    const struct replay_event *e = &p->next;
+    struct record_head *h = &p->head;
+    if (e->frame.id == RECORD_NODES && e->blob_bytes == sizeof h->nodes) {
+        h->has_nodes = true;
+        memcpy(h->nodes, e->blob, sizeof h->nodes);
+        return true;
+    }
+    if (e->frame.id == RECORD_RESTART) {
+        snprintf(h->restart, sizeof h->restart, "%.23s", (const char *)e->blob);
+        if (p->board) {
+            p->board->restart = h->restart[0] == '\0' ? NULL : h->restart;
+        }
+        return true;
+    }
+    return false;
+}
+
+static bool is_blob(uint32_t kind)
+{
+    return kind == RECORD_HEAD || kind == RECORD_CONTROL || kind == RECORD_NODES ||
+           kind == RECORD_RESTART;
 }
 
 /* See that the next event is there. */
@@ -159,8 +190,11 @@ static void look_ahead(struct replay *p)
         if (e->kind != REPLAY_OWN) {
             return;
         }
-        if (e->frame.id == RECORD_HEAD || e->frame.id == RECORD_CONTROL) {
+        if (is_blob(e->frame.id)) {
             join_blob(p);
+            if (e->kind == REPLAY_OWN && take_setting(p)) {
+                e->kind = REPLAY_NONE;
+            }
         } else if (e->frame.id == RECORD_READS) {
             e->left = e->frame.data[0];
         } else if (e->frame.id == RECORD_WAITS) {
@@ -288,19 +322,29 @@ static int read_poll(void *ctx)
 
 /* ---- bus ---- */
 
-static int receive(void *ctx, struct lm_can_frame *frame)
+/* From interface 0 or 1. */
+static int hear(struct replay *p, uint32_t interface, struct lm_can_frame *frame)
 {
-    struct replay *p = ctx;
-    if (is_next(p, RECORD_BUS_DOWN)) {
+    if (is_next(p, RECORD_BUS_DOWN) && word_of(&p->next.frame) == interface) {
         take(p);
         return LM_ERR_IO;
     }
-    if (!is_next_frame(p, REPLAY_HEARD)) {
+    if (!is_next_frame(p, interface == 0 ? REPLAY_HEARD : REPLAY_HEARD_2)) {
         return 0;
     }
     *frame = p->next.frame;
     take(p);
     return 1;
+}
+
+static int receive(void *ctx, struct lm_can_frame *frame)
+{
+    return hear(ctx, 0, frame);
+}
+
+static int receive_2(void *ctx, struct lm_can_frame *frame)
+{
+    return hear(ctx, 1, frame);
 }
 
 static bool are_same(const struct lm_can_frame *a, const struct lm_can_frame *b)
@@ -426,6 +470,7 @@ int replay_open(struct replay *p, const char *path)
         return -1;
     }
     take(p);
+    look_ahead(p); /* settings stand below the head */
     return 0;
 }
 
@@ -438,6 +483,11 @@ const char *replay_difference(const struct replay *p, const struct record_head *
            : h->profile_crc != mine->profile_crc ? "another table of the bus"
            : h->radar_crc != mine->radar_crc     ? "another radar table"
                                                  : NULL;
+}
+
+bool replay_is_other_build(const struct replay *p)
+{
+    return strcmp(p->head.build, record_build) != 0;
 }
 
 static int lend_pictures(struct replay *p)
@@ -468,7 +518,8 @@ static void set_board(struct replay *p, struct lm_board *board)
     board->noise_seed = h->noise_seed;
     board->flash_poll_limit = h->flash_poll_limit;
     board->tile_pool_bytes = h->tile_slots * sizeof(struct lm_tile);
-    board->restart = strcmp(h->restart, "-") == 0 ? NULL : p->head.restart;
+    board->bus_nodes = h->has_nodes ? p->head.nodes : NULL;
+    board->restart = strcmp(h->restart, "-") == 0 || h->restart[0] == '\0' ? NULL : p->head.restart;
 }
 
 int replay_wrap(struct replay *p, struct lm_board *board)
@@ -483,6 +534,7 @@ int replay_wrap(struct replay *p, struct lm_board *board)
                                  .read_start = read_start,
                                  .read_poll = read_poll};
     p->can = (struct lm_can){.ctx = p, .receive = receive};
+    p->can_2 = (struct lm_can){.ctx = p, .receive = receive_2};
     p->controls = (struct lm_controls){.ctx = p, .next = next_control};
     p->display = (struct lm_display){.ctx = p,
                                      .width_px = (uint16_t)p->head.width_px,
@@ -491,6 +543,8 @@ int replay_wrap(struct replay *p, struct lm_board *board)
                                      .present = present};
     board->flash = &p->flash;
     board->can = &p->can;
+    board->can_2 = (p->head.switches & RECORD_HAS_SECOND) != 0 ? &p->can_2 : NULL;
+    p->board = board;
     board->controls = &p->controls;
     board->display = &p->display;
     return 0;

@@ -24,6 +24,7 @@ struct replay_event {
     enum {
         REPLAY_NONE, /* nothing is read ahead */
         REPLAY_HEARD,
+        REPLAY_HEARD_2, /* on the second interface */
         REPLAY_SENT,
         REPLAY_OWN,
         REPLAY_OVER /* the recording is over, or broken */
@@ -47,8 +48,9 @@ struct replay {
     uint64_t now_us, steps;
 
     const struct lm_flash *image; /* borrowed */
+    struct lm_board *board;       /* borrowed from replay_wrap on */
     struct lm_flash flash;
-    struct lm_can can;
+    struct lm_can can, can_2;
     struct lm_controls controls;
     struct lm_display display;
     uint8_t *destination;
@@ -63,7 +65,8 @@ struct replay {
     uint32_t *canvas;           /* owned: lent to the unit */
     uint32_t pictures;          /* presented so far */
 
-    bool has_ended; /* the recording ended in good order */
+    bool has_ended;  /* the recording ended in good order */
+    uint32_t ceased; /* enum record_reason: the recorder gave up at its end, or 0 */
     struct {
         uint32_t departures; /* steps that did not ask for what was recorded, or for more */
         uint32_t checks, checks_failed;
@@ -81,8 +84,13 @@ int replay_open(struct replay *p, const char *path);
  * version, the image, the table of the bus or the radar. `mine` is described by record_describe. */
 const char *replay_difference(const struct replay *p, const struct record_head *mine);
 
+/* Whether it was recorded by another build of this firmware. That is no reason not to show it: the
+ * checks tell whether its pictures are the same. */
+bool replay_is_other_build(const struct replay *p);
+
 /* Put the recording's settings and ports into a board, whose flash becomes the source of the
- * bytes. Returns 0; or -1 without memory. Before lm_unit_init. */
+ * bytes. The board must live as long as the replay. Returns 0; or -1 without memory. Before
+ * lm_unit_init. */
 int replay_wrap(struct replay *p, struct lm_board *board);
 
 /* The time of the next step. False at the end of the recording. */

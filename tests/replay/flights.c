@@ -32,7 +32,7 @@ struct flight {
     struct hs_rng rng;
     struct memory_flash flash;
     struct lm_flash port;
-    struct lm_can can;
+    struct lm_can can, can_2;
     struct lm_controls controls;
     struct lm_display display;
     struct lm_board board;
@@ -150,6 +150,7 @@ static struct lm_can_frame other_frame(struct flight *f)
         frame.data[4] = (uint8_t)hs_rng_below(&f->rng, 30);
         frame.length = 5;
     }
+    frame.data[0] = happens(f, 3) ? 2 : frame.data[0];
     frame.is_error = happens(f, 30);
     frame.is_remote = !frame.is_error && happens(f, 30);
     frame.is_extended = !frame.is_error && happens(f, 30);
@@ -175,6 +176,22 @@ static int receive(void *ctx, struct lm_can_frame *frame)
     }
     *frame = nav_frame(f, f->bus.next);
     f->bus.next = (f->bus.next + 1) % NAV_FRAMES;
+    return 1;
+}
+
+/* The second interface: the same frames at other times, which are late by another sender's clock.
+ */
+static int receive_2(void *ctx, struct lm_can_frame *frame)
+{
+    struct flight *f = ctx;
+    if (happens(f, 300)) {
+        return LM_ERR_IO;
+    }
+    if (!happens(f, 8)) {
+        return 0;
+    }
+    *frame = happens(f, 4) ? other_frame(f) : nav_frame(f, (int)hs_rng_below(&f->rng, NAV_FRAMES));
+    frame->data[0] = 2;
     return 1;
 }
 
@@ -342,6 +359,7 @@ static void open_board(struct flight *f, const uint8_t *image, size_t size)
     f->port = (struct lm_flash){
         .ctx = f, .size_bytes = size, .read_start = start_read, .read_poll = poll_read};
     f->can = (struct lm_can){.ctx = f, .receive = receive, .send = send_frame};
+    f->can_2 = (struct lm_can){.ctx = f, .receive = receive_2};
     f->controls = (struct lm_controls){.ctx = f, .next = next_control};
     f->display = (struct lm_display){f, SIDE_PX, SIDE_PX, acquire, present};
     f->board = (struct lm_board){.radar = &lm_radar_default,
@@ -357,6 +375,20 @@ static void open_board(struct flight *f, const uint8_t *image, size_t size)
                                  .plane = f->plane,
                                  .glass_step_px = LM_GLASS_STEP_PX,
                                  .flash_poll_limit = POLLS};
+}
+
+/* Every third flight has a second interface, and every fourth hears some nodes only. Replays must
+ * know it from the table of the one and the recording of the other. */
+static void choose_buses(struct flight *f, uint64_t seed)
+{
+    if (seed % 3 == 0) {
+        f->board.can_2 = &f->can_2;
+        f->board.tables[0] = (struct lm_board_table){&lm_bus_xcsoar, 1};
+    }
+    if (seed % 4 == 0) {
+        static const uint8_t nodes[LM_BUS_NODE_BYTES] = {0, 1 << 1}; /* node 9 */
+        f->board.bus_nodes = nodes;
+    }
 }
 
 static void put_line(void *ctx, const char *line, size_t bytes)
@@ -379,6 +411,7 @@ static bool record_flight(struct flight *f, const char *folder, uint64_t seed)
     const struct record_sink sink = {f, put_line};
     hs_rng_seed(&f->rng, seed);
     f->board.noise_seed = (uint32_t)seed;
+    choose_buses(f, seed);
     f->log = open_file(folder, seed, "log", "w");
     f->sums = open_file(folder, seed, "sums", "w");
     if (!f->log || !f->sums) {
@@ -441,6 +474,8 @@ static bool replay_flight(struct flight *f, const char *folder, uint64_t seed, b
         return false;
     }
     f->board.flash = &f->flash.port;
+    choose_buses(f, seed);
+    f->board.bus_nodes = NULL;
     struct record_head mine;
     record_describe(&mine, &f->board, 0);
     const char *difference = replay_difference(&p, &mine);

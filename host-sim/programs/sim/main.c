@@ -285,14 +285,18 @@ static int step_again(struct sim *s, uint64_t from_us)
     return p->pictures != before && s->now_us >= from_us ? serve_picture(s) : 0;
 }
 
-/* Open the recording, and a unit for it. */
+static int open_recording(struct sim *s)
+{
+    return replay_open(&s->replay, s->options.replay) == 0
+               ? 0
+               : hs_error(s->options.replay, "landmass-sim --record and the panel write recordings",
+                          "%s", s->replay.error);
+}
+
+/* A unit for the recording that is open. */
 static int open_again(struct sim *s, const struct bench_bus *bus)
 {
     const struct options *o = &s->options;
-    if (replay_open(&s->replay, o->replay) != 0) {
-        return hs_error(o->replay, "landmass-sim --record and the panel write recordings", "%s",
-                        s->replay.error);
-    }
     const struct bench_glass glass = {(uint16_t)s->replay.head.width_px,
                                       (uint16_t)s->replay.head.height_px, o->glass};
     const struct bench_scene scene = {.database = o->database,
@@ -301,7 +305,7 @@ static int open_again(struct sim *s, const struct bench_bus *bus)
                                       .is_any_replayed = o->is_any_replayed};
     if (bench_open(&s->bench, &scene, &glass, 0, bus, &s->hands.port) != 0) {
         return hs_error(o->replay,
-                        "name the image, --profile, --bus-table and --radar of the recording; "
+                        "name the image, the tables of the bus and --radar of the recording; "
                         "--replay-anyway shows it with these",
                         "%s", s->bench.error);
     }
@@ -313,7 +317,7 @@ static int rewind_flight(struct sim *s, const struct bench_bus *bus)
 {
     replay_close(&s->replay);
     bench_close(&s->bench);
-    return open_again(s, bus);
+    return open_recording(s) == 0 ? open_again(s, bus) : -1;
 }
 
 /* Stand still as long as the user wants, and hold his pace otherwise. Returns 1 when he ends it. */
@@ -387,12 +391,18 @@ static int judge_again(const struct sim *s)
     hs_report_put("checks_failed", p->count.checks_failed);
     hs_report_put("reads_differ", p->count.reads_differ);
     hs_report_flag("has_ended", p->has_ended);
+    hs_report_flag("is_other_build", replay_is_other_build(p));
+    hs_report_put("ceased", p->ceased);
     hs_report_close();
     if (!s->options.is_quiet) {
         printf("replay: %llu steps, %.1f s; checks of the glass %u, failed %u; departures %u%s\n",
                (unsigned long long)p->steps, (double)p->now_us * 1e-6, p->count.checks,
                p->count.checks_failed, p->count.departures,
                p->has_ended ? "" : "; the recording has no end");
+    }
+    if (p->ceased != 0) {
+        hs_warn(s->options.replay, "the flight went on, and is not in it",
+                "the recorder gave up here: %s", record_reason_words(p->ceased));
     }
     if (p->error[0] != '\0') {
         return hs_error(s->options.replay, "what stands before it was shown", "%s", p->error);
@@ -632,7 +642,8 @@ static int choose_tables(struct sim *s, struct bench_bus *bus)
     if (o->profile && o->table && hear_beside(bus, o->profile, &s->table.profile, 0) != 0) {
         return -1;
     }
-    if (!o->bus_log_2) {
+    const bool is_recorded = (s->replay.head.switches & RECORD_HAS_SECOND) != 0;
+    if (!o->bus_log_2 && !is_recorded) {
         return 0;
     }
     const struct lm_bus_profile *second =
@@ -642,6 +653,16 @@ static int choose_tables(struct sim *s, struct bench_bus *bus)
         return -1;
     }
     return o->table_2 ? hear_beside(bus, second, &s->table_2.profile, 1) : 0;
+}
+
+/* Another build may show the same: the checks tell. */
+static void warn_of_build(const struct sim *s)
+{
+    if (replay_is_other_build(&s->replay)) {
+        hs_warn(s->options.replay, "the checks tell whether the pictures are the same",
+                "was made by build %s of the firmware, and this is %s", s->replay.head.build,
+                record_build);
+    }
 }
 
 /* Show a recording: its bus, its controls and its settings take the place of those named. */
@@ -654,6 +675,7 @@ static int run_again(struct sim *s, const struct bench_bus *bus)
         return -1;
     }
     warn_of_database(s);
+    warn_of_build(s);
     s->options.width_px = (uint16_t)s->replay.head.width_px;
     s->options.height_px = (uint16_t)s->replay.head.height_px;
     int status = open_bezel(s);
@@ -716,7 +738,7 @@ static int run(struct sim *s)
                             .is_heading_magnetic = o->heading == 1,
                             .tells_reports = o->tells_reports,
                             .obeys_controls = o->obeys_controls};
-    if (choose_tables(s, &bus) != 0) {
+    if ((o->replay && open_recording(s) != 0) || choose_tables(s, &bus) != 0) {
         return -1;
     }
     const int status = o->replay ? run_again(s, &bus) : run_flight(s, &bus);

@@ -206,9 +206,9 @@ static bool check(const struct options *o, int *exit_code)
         *exit_code = hs_options_wrong(&usage, "--bus", "and --can exclude each other");
         return false;
     }
-    if ((o->profile_2 || o->table_2) && !o->bus_log_2) {
+    if ((o->profile_2 || o->table_2) && !o->bus_log_2 && !o->replay) {
         *exit_code = hs_options_wrong(&usage, o->table_2 ? "--table2" : "--profile2",
-                                      "needs the second interface, --bus2");
+                                      "needs the second interface, --bus2, or --replay");
         return false;
     }
     if (o->bus_log_2 && !o->bus_log) {
@@ -222,10 +222,6 @@ static bool check(const struct options *o, int *exit_code)
     }
     if (o->start_s > 0 && !o->bus_log) {
         *exit_code = hs_options_wrong(&usage, "--start", "needs the log of --bus");
-        return false;
-    }
-    if (o->bus_log_2 && o->record) {
-        *exit_code = hs_options_wrong(&usage, "--record", "holds one bus: without --bus2");
         return false;
     }
     if (o->replay && (o->bus_log || o->can_interface || o->script || o->record || o->bus_out)) {
