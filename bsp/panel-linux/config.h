@@ -78,6 +78,9 @@ struct config {
     struct config_stick stick;
     struct drv_stick_config stick_map;
 
+    char record[CONFIG_PATH];
+    uint32_t record_size_mib;
+
     uint32_t priority;
     uint32_t locks_memory;
     char watchdog[CONFIG_PATH];

@@ -185,6 +185,15 @@ const struct config_row config_table[] = {
     STICK(30, "none"),
     STICK(31, "none"),
     STICK(32, "none"),
+    OPTION(
+        CONFIG_PATH_TO, record, 0, ROOM(record), "none", "record", "PATH | none",
+        "/var/lib/landmass-panel/recordings",
+        "Folder of the recording of the last hours, which landmass-sim --replay shows again. It is "
+        "made if the folder above it is there."),
+    OPTION(
+        CONFIG_NUMBER, record_size_mib, 64, 16000, NULL, "record.size", "64..16000", "4096",
+        "MiB that recordings may take; the oldest go first. 100 to 150 MiB hold an hour of a busy "
+        "bus. 64 MiB of the file system stay free in any case."),
     OPTION(CONFIG_NUMBER, priority, 0, 90, NULL, "realtime.priority", "0..90", "40",
            "SCHED_FIFO priority of the loop; 0: an ordinary process."),
     OPTION(CONFIG_CHOICE, locks_memory, 0, 0, "free locked", "realtime.memory", "free | locked",

@@ -82,6 +82,7 @@ static void report_counters(const struct panel *p)
                "%u empty, %u errors",
                c.attached, c.detached, c.refused, c.reports, c.empty, c.errors);
     }
+    recording_report(&p->recording);
     report(REPORT_INFO, "watchdog: fed %u times, hungry %u times", p->watchdog.count.fed,
            p->watchdog.count.refused);
 }
@@ -117,15 +118,19 @@ static void name_flags(uint32_t flags, char *text, size_t size)
 static void report_flags(struct panel *p, uint64_t now_us)
 {
     const uint32_t flags = p->unit->flags;
-    if (now_us < p->tell_us || (flags == p->flags_told && p->count.steps > 1)) {
+    const char *const trouble = p->recording.trouble;
+    const bool is_told = flags == p->flags_told && trouble == p->trouble_told;
+    if (now_us < p->tell_us || (is_told && p->count.steps > 1)) {
         return;
     }
     char words[128], status[192];
     name_flags(flags, words, sizeof words);
-    snprintf(status, sizeof status, "STATUS=%s", words[0] != '\0' ? words : "no fault");
+    snprintf(status, sizeof status, "STATUS=%s%s%s", words[0] != '\0' ? words : "no fault",
+             trouble != NULL ? "; " : "", trouble != NULL ? trouble : "");
     drv_watchdog_notify(&p->watchdog, status);
     report(REPORT_NOTICE, "the glass says: %s", words[0] != '\0' ? words : "no fault");
     p->flags_told = flags;
+    p->trouble_told = trouble;
     p->tell_us = now_us + TELL_US;
 }
 
@@ -146,6 +151,7 @@ void panel_step(struct panel *p, uint64_t now_us)
 {
     bezel_service(&p->bezel, now_us);
     glass_service(&p->glass, now_us);
+    recording_step(&p->recording, now_us);
     lm_unit_step(p->unit, now_us);
     p->count.steps++;
     show_lamps(p);

@@ -76,10 +76,12 @@ static int next_control(void *ctx, struct lm_control *control)
 /* A database that cannot be used is no reason to stop: the glass shows DB FAIL. */
 static void start_with_flash(struct panel *p, const struct lm_flash *flash)
 {
+    recording_begin(&p->recording, &p->board, panel_now_us(p));
     if (lm_unit_init(p->unit, &p->board) != LM_OK) {
         report(REPORT_ERROR, "%s: its coarsest level has too many tiles; raise the option tiles",
                p->config->database);
         p->board.flash = &drv_no_flash;
+        recording_begin(&p->recording, &p->board, panel_now_us(p));
         (void)lm_unit_init(p->unit, &p->board);
     } else if (p->unit->map.open_status == LM_ERR_VERSION) {
         report(REPORT_ERROR,
@@ -245,6 +247,13 @@ static void open_watchdog(struct panel *p)
     p->board.restart = p->watchdog.has_bitten ? "WATCHDOG" : NULL;
 }
 
+static void open_recording(struct panel *p)
+{
+    struct recording_limits limits = recording_usual;
+    limits.bytes = (uint64_t)p->config->record_size_mib << 20;
+    recording_open(&p->recording, p->config->record, &limits);
+}
+
 int panel_open(struct panel *p, const struct config *config)
 {
     memset(p, 0, sizeof *p);
@@ -257,6 +266,7 @@ int panel_open(struct panel *p, const struct config *config)
     const struct lm_flash *flash = open_flash(p);
     bezel_open(&p->bezel, config, panel_now_us(p));
     hand_open(&p->hand, config);
+    open_recording(p);
     int status = glass_open(&p->glass, config, panel_now_us(p));
     if (status == 0) {
         status = start_unit(p, flash);
@@ -264,6 +274,9 @@ int panel_open(struct panel *p, const struct config *config)
         report(REPORT_ERROR, "start: out of memory");
     }
     open_watchdog(p); /* last: until the loop runs, nobody feeds it */
+    if (status == 0) {
+        recording_start(&p->recording, p->board.restart);
+    }
     if (status != 0) {
         panel_close(p);
     }
@@ -273,6 +286,7 @@ int panel_open(struct panel *p, const struct config *config)
 void panel_close(struct panel *p)
 {
     drv_watchdog_notify(&p->watchdog, "STOPPING=1");
+    recording_close(&p->recording);
     hand_close(&p->hand);
     bezel_close(&p->bezel);
     glass_close(&p->glass);

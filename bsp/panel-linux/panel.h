@@ -14,6 +14,7 @@
 #include "drv/watchdog.h"
 #include "hand_controller.h"
 #include "lm/unit.h"
+#include "recording.h"
 
 enum {
     PANEL_TICK_US = 2000, /* time between steps: at the fastest scale a line is due every 2 ms */
@@ -36,9 +37,11 @@ struct panel {
     struct lm_radar radar;           /* of the configuration, where it names one */
     struct bus_table table, table_2; /* likewise */
     struct lm_board board;
-    struct lm_unit *unit; /* owned */
-    uint32_t flags_told;  /* enum lm_flag, as reported last */
-    uint64_t tell_us;     /* time of the next report */
+    struct recording recording;
+    struct lm_unit *unit;     /* owned */
+    uint32_t flags_told;      /* enum lm_flag, as reported last */
+    const char *trouble_told; /* of the recording, likewise */
+    uint64_t tell_us;         /* time of the next report */
 
     struct {
         uint32_t steps;

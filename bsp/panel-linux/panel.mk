@@ -7,7 +7,7 @@ PANEL_READER := $(call objs,host-sim/bus/table_text.c $(patsubst %,host-sim/lib/
 $(O)/bsp/panel-linux/%.o $(O)/sanitized/bsp/panel-linux/%.o: EXTRA_CFLAGS := -Ihost-sim/bus/include -Ihost-sim/lib/include
 PANEL := $(O)/bin/landmass-panel
 PROGRAMS += $(PANEL)
-$(PANEL): $(O)/bsp/panel-linux/main.o $(PANEL_READER) $(LIB_panel) $(LIB_drivers) $(LIB_firmware) $(LIB_fixed)
+$(PANEL): $(O)/bsp/panel-linux/main.o $(PANEL_READER) $(LIB_panel) $(LIB_record) $(LIB_drivers) $(LIB_firmware) $(LIB_fixed)
 $(PANEL): LDLIBS = $(LINUX_LIBS)
 
 .PHONY: panel-program panel-package

@@ -340,6 +340,10 @@ void record_restart(struct recorder *r, const char *restart)
 
 void record_cease(struct recorder *r, enum record_reason reason, uint32_t lines_lost)
 {
+    if (lines_lost > 0) { /* what is pending came after them */
+        r->ticks.count = 0;
+        r->read.count = r->read.crc = r->read.waits = 0;
+    }
     put_event(r, RECORD_CEASED, (int)reason, lines_lost);
 }
 

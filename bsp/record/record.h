@@ -155,7 +155,8 @@ void record_part(struct recorder *r, uint32_t number);
  * power was switched on. */
 void record_restart(struct recorder *r, const char *restart);
 
-/* The last line of a recording that goes no further, though the unit does. */
+/* The last line of a recording that goes no further, though the unit does. What is pending is left
+ * out if lines were lost before it. */
 void record_cease(struct recorder *r, enum record_reason reason, uint32_t lines_lost);
 
 /* Why a recorder gave up, in words: "it is as long as it may be". */

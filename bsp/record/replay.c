@@ -101,33 +101,6 @@ static bool read_line(struct replay *p, struct replay_event *e)
     return true;
 }
 
-/* Join the lines of a blob: its length, then its bytes. */
-static void join_blob(struct replay *p)
-{
-    struct replay_event *e = &p->next;
-    const struct lm_can_frame first = e->frame;
-    uint8_t whole[RECORD_BLOB_MAX + 9];
-    const uint32_t wanted = first.length > 0 ? 1u + first.data[0] : 1;
-    uint32_t got = first.length;
-    memcpy(whole, first.data, first.length);
-    while (got < wanted) {
-        if (!read_line(p, e) || e->kind != REPLAY_OWN || e->frame.id != first.id ||
-            e->frame.length == 0) {
-            if (p->error[0] == '\0' && !feof(p->file)) {
-                stop(p, "%s line %u: the lines of a control are not complete", p->path, p->line);
-            }
-            e->kind = REPLAY_OVER;
-            return;
-        }
-        memcpy(whole + got, e->frame.data, e->frame.length);
-        got += e->frame.length;
-    }
-    e->frame = first;
-    e->blob_bytes = got - 1 < RECORD_BLOB_MAX ? got - 1 : RECORD_BLOB_MAX;
-    memcpy(e->blob, whole + 1, e->blob_bytes);
-    e->blob[e->blob_bytes] = '\0';
-}
-
 static uint32_t word_of(const struct lm_can_frame *f)
 {
     const uint8_t *d = f->data;
@@ -145,11 +118,42 @@ static bool take_mark(struct replay *p)
         return true;
     }
     if (f->id == RECORD_END || f->id == RECORD_CEASED) {
-        p->has_ended = true;
+        p->has_ended = f->id == RECORD_END || word_of(f) == 0;
         p->ceased = f->id == RECORD_CEASED ? f->data[0] : 0;
         p->next.kind = REPLAY_OVER;
     }
     return false;
+}
+
+/* Join the lines of a blob: its length, then its bytes. */
+static void join_blob(struct replay *p)
+{
+    struct replay_event *e = &p->next;
+    const struct lm_can_frame first = e->frame;
+    uint8_t whole[RECORD_BLOB_MAX + 9];
+    const uint32_t wanted = first.length > 0 ? 1u + first.data[0] : 1;
+    uint32_t got = first.length;
+    memcpy(whole, first.data, first.length);
+    while (got < wanted) {
+        if (!read_line(p, e) || e->kind != REPLAY_OWN || e->frame.id != first.id ||
+            e->frame.length == 0) {
+            if (e->kind == REPLAY_OWN && e->frame.id == RECORD_CEASED) {
+                (void)take_mark(p); /* lines were lost before it */
+                return;
+            }
+            if (p->error[0] == '\0' && !feof(p->file)) {
+                stop(p, "%s line %u: the lines of a control are not complete", p->path, p->line);
+            }
+            e->kind = REPLAY_OVER;
+            return;
+        }
+        memcpy(whole + got, e->frame.data, e->frame.length);
+        got += e->frame.length;
+    }
+    e->frame = first;
+    e->blob_bytes = got - 1 < RECORD_BLOB_MAX ? got - 1 : RECORD_BLOB_MAX;
+    memcpy(e->blob, whole + 1, e->blob_bytes);
+    e->blob[e->blob_bytes] = '\0';
 }
 
 /* A blob that is a setting of the board. True if it is one. */

@@ -65,7 +65,7 @@ struct replay {
     uint32_t *canvas;           /* owned: lent to the unit */
     uint32_t pictures;          /* presented so far */
 
-    bool has_ended;  /* the recording ended in good order */
+    bool has_ended;  /* the recording ended in good order: no line of it is missing */
     uint32_t ceased; /* enum record_reason: the recorder gave up at its end, or 0 */
     struct {
         uint32_t departures; /* steps that did not ask for what was recorded, or for more */

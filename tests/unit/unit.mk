@@ -99,7 +99,7 @@ $(UNIT)/drivers/test_zynqmp_devices: $(addprefix $(O)/drivers/,can/can_zynqmp.o 
 $(UNIT)/drivers/bezel/test_bezel_serial: $(O)/drivers/bezel/bezel_serial.o
 
 # The panel's program is a library without its main; its bezel stands on the fake lines of drivers/gpio.
-$(UNIT_bsp/panel-linux): $(LIB_panel)
+$(UNIT_bsp/panel-linux): $(LIB_panel) $(LIB_record)
 $(O)/tests/unit/bsp/panel-linux/%.o: EXTRA_CFLAGS += -Itests/unit/drivers/gpio
 $(UNIT)/bsp/panel-linux/test_bezel: $(addprefix $(O)/tests/unit/drivers/gpio/,fake_gpio.o fake_gpiod$(GPIOD_MAJOR).o)
 $(UNIT)/bsp/panel-linux/test_bezel: LDLIBS += $(call WRAP,open) $(if $(filter 2,$(GPIOD_MAJOR)),$(WRAP_gpiod2))
