@@ -1,0 +1,149 @@
+/* What this page tells the displays, again and again, as docs/bus.md wants it: once a second.
+ *
+ * Several pages are one sender to the displays: one node, and message codes that go on from what came
+ * back. The page whose frames were the last on the bus keeps the thing; when another page's frames of
+ * the same thing come back, this page stops. What a page kept that has gone away is kept by another
+ * one after two to three seconds, before the displays drop it. */
+import {linesOf} from './frames.mjs';
+import {subjectOf} from './world.mjs';
+
+const REPEAT_MS = 1000, ECHO_MS = 5000, CLASH_MS = 300, SAME_SET_MS = 20, TAKE_OVER_US = 1.8e6, TAKE_OVER_MORE_US = 1e6;
+
+/* A thing that is kept. Malfunctions have a sender in common, but are kept one by one. */
+export function keyOf(fact) {
+    return fact.what === 'malfunction' ? `malfunction ${fact.kind}` : subjectOf(fact);
+}
+
+/* What counts its message codes together. */
+const groupOf = (id) => id >= 1530 && id <= 1549 ? 'control' : id >= 1800 && id <= 1803 ? 'rain' : id >= 1804 && id <= 1806 ? 'jammer'
+    : id >= 1810 && id <= 1819 && id !== 1817 && id !== 1818 ? 'target' : String(id);
+
+export class Keeper {
+    /* `send(lines)` puts text on the bus, `nowMs()` is a clock that never goes back. */
+    constructor({send, nowMs, node, random = Math.random}) {
+        Object.assign(this, {send, nowMs, node, random, kept: new Map(), sent: new Map(), codes: new Map(), removed: new Map()});
+    }
+
+    /* ---- telling ---- */
+
+    /* One set, or frames that stand alone, under one code for each of their groups. */
+    tell(frames) {
+        const groups = new Map();
+        frames.forEach((f) => groups.set(groupOf(f.id), [...groups.get(groupOf(f.id)) ?? [], f]));
+        const lines = [...groups].flatMap(([group, members]) => {
+            const code = ((this.codes.get(group) ?? Math.floor(256 * this.random())) + 1) & 255;
+            this.codes.set(group, code);
+            members.forEach(({id, type, service, bytes}) =>
+                this.sent.set(`${id}#${[this.node, type, service, code, ...bytes].join(',')}`, this.nowMs()));
+            return linesOf(members, this.node, code);
+        });
+        this.send(lines.join('\n'));
+    }
+
+    /* From now on tell this, once a second. `frames()` gives what to tell at the moment. */
+    keep(key, frames, more = {}) {
+        this.removed.delete(key);
+        this.kept.set(key, {...more, frames, wishedMs: this.nowMs(), sentMs: this.nowMs(), retriedMs: -Infinity, tries: 1});
+        this.tell(frames());
+    }
+
+    /* Tell a kept thing at once. */
+    refresh(key) {
+        const item = this.kept.get(key);
+        if (item) {
+            item.sentMs = this.nowMs();
+            this.tell(item.frames());
+        }
+    }
+
+    /* Tell no more of these, and say so. */
+    remove(keys, frames) {
+        keys.forEach((key) => {
+            this.kept.delete(key);
+            this.removed.set(key, {frames, ms: this.nowMs(), tries: 1});
+        });
+        this.tell(frames);
+    }
+
+    /* ---- hearing ---- */
+
+    isOwn(fact) {
+        return fact.keys.every((key) => this.sent.has(key));
+    }
+
+    /* A fact that came back. `isHeard`: the displays listen to its node. Returns the key of what this page had to give
+     * up, or null. */
+    hear(fact, isHeard) {
+        const isOwn = this.isOwn(fact), key = keyOf(fact);
+        if (fact.node === this.node && !isOwn && fact.keys.length > 0) {
+            this.codes.set(groupOf(Number(fact.keys[0].split('#')[0])), fact.code);
+        }
+        if (isOwn) {
+            return isHeard ? null : this.giveUp(key);
+        }
+        if (fact.node !== this.node) {
+            return null;
+        }
+        return key === null ? this.hearRemoval(fact) : this.hearOther(key);
+    }
+
+    giveUp(key) {
+        return this.kept.delete(key) ? key : null;
+    }
+
+    /* Another page told something of what this page keeps, or has just removed. */
+    hearOther(key) {
+        const item = this.kept.get(key), removal = this.removed.get(key), now = this.nowMs();
+        if (removal && now - removal.ms < CLASH_MS && removal.tries-- > 0) {
+            this.tell(removal.frames);
+            return null;
+        }
+        if (item && now - item.wishedMs < CLASH_MS && item.tries > 0) {
+            item.tries--;
+            item.retriedMs = now;
+            this.refresh(key);
+            return null;
+        }
+        if (item && now - item.retriedMs < SAME_SET_MS) {
+            return null; // the other frames of what was answered just now
+        }
+        return item ? this.giveUp(key) : null;
+    }
+
+    /* Another page removed things. */
+    hearRemoval(fact) {
+        const isGone = (key) => {
+            const [name, number] = [key.split(' ')[0], Number(key.split(' ')[1])];
+            return fact.what === 'target-clear' ? name === 'target' : fact.what === 'target-remove' ? name === 'target' && number === fact.number
+                : fact.what === 'malfunction-clear' ? name === 'malfunction' && (fact.kind === 255 || fact.kind === number)
+                : fact.what === 'weather-clear' && (name === 'rain' ? fact.bits >> number & 1 : name === 'jammer' ? fact.bits >> (4 + number) & 1
+                    : (name === 'sea' || name === 'wind') && fact.bits === 255);
+        };
+        [...this.kept.keys()].filter(isGone).forEach((key) => this.kept.delete(key));
+        return null;
+    }
+
+    /* ---- time goes on ---- */
+
+    /* Repeat what is due. */
+    tick() {
+        const now = this.nowMs();
+        this.kept.forEach((item, key) => now - item.sentMs >= REPEAT_MS && this.refresh(key));
+        this.sent.forEach((ms, key) => now - ms > ECHO_MS && this.sent.delete(key));
+    }
+
+    /* Which of these things, {key, timeUs, node}, has nobody told for so long that this page has to. */
+    orphans(things, nowUs) {
+        return things.filter(({key, timeUs, node}) => {
+            if (node !== this.node || this.kept.has(key)) {
+                return false;
+            }
+            this.patience ??= this.random(); // pages differ, so that one is the first
+            return nowUs - timeUs > TAKE_OVER_US + TAKE_OVER_MORE_US * this.patience;
+        });
+    }
+
+    get keys() {
+        return [...this.kept.keys()];
+    }
+}
