@@ -21,7 +21,7 @@ LIB_bench := $(O)/libbench.a
 $(LIB_bench): $(call objs,$(wildcard bsp/bench-linux/*.c) $(RECORD_SOURCES))
 # Recorder and replay, which boards with files share.
 LIB_record := $(O)/librecord.a
-$(call archive, $(LIB_record), $(RECORD_SOURCES) drivers/can/can_log.c)
+$(call archive, $(LIB_record), $(RECORD_SOURCES) drivers/can/can_line.c)
 
 # The libraries $(1) and all below them, in the order of linking.
 host_needs    = $(filter $(1) $(foreach l,$(1),$(HOST_NEEDS_$l)),$(HOST_LIBS))

@@ -4,7 +4,7 @@ AR  := gcc-ar
 RUN :=
 
 # Of drivers/, each without its ending: those of the panel too, which is tested here.
-DRIVERS = can/can_log $(LINUX_DRIVERS)
+DRIVERS = can/can_line can/can_log $(LINUX_DRIVERS)
 
 # How the two lowest layers are compiled. They are all integers, so the picture is the same whatever is chosen here. A PC of
 # the last ten years has 256-bit vectors: its compiler is told so when the machine that builds, which is the one that

@@ -1,7 +1,7 @@
 /* Controls as bytes: numbers of 32 bits, the lowest byte first. */
 #include "record.h"
 
-#include <string.h>
+#include "fx/mem.h"
 
 struct bytes {
     uint8_t *to;         /* writing */

@@ -1,11 +1,8 @@
-/* The head of a recording: what must be the same when it is shown again. */
+/* The head of a recording: what must be the same when it is shown again. Needs no C library. */
 #include "record.h"
 
-#include <inttypes.h>
-#include <stdio.h>
-#include <string.h>
-
 #include "fx/crc32c.h"
+#include "fx/mem.h"
 #include "lm/radar_record.h"
 #include "lm/version.h"
 
@@ -161,39 +158,105 @@ void record_describe(struct record_head *head, const struct lm_board *board, uin
     }
 }
 
-size_t record_head_write(const struct record_head *h, char *text, size_t room)
+/* ---- the text ---- */
+
+enum { WORDS = 19 };
+
+/* Words that are read one after the other. */
+struct words {
+    const char *at;
+    uint32_t count; /* read so far and sound */
+};
+
+/* The next word of at most `most` characters, which *text moves to. 0: there is none, or it is too
+ * long. */
+static size_t next_word(struct words *w, const char **text, size_t most)
 {
-    const int length =
-        snprintf(text, room,
-                 "%d %s %" PRIu64 " %" PRIu64 " %08" PRIx32 " %s %08" PRIx32 " %08" PRIx32
-                 " %" PRIu32 " %" PRIu32 " %" PRIu32 " %" PRIu32 " %" PRIu32 " %" PRIu32 " %" PRIu32
-                 " %" PRIu32 " %" PRIu32 " %s %s",
-                 RECORD_VERSION, h->version, h->zero_us, h->image_bytes, h->image_crc, h->profile,
-                 h->profile_crc, h->radar_crc, h->width_px, h->height_px, h->tile_slots,
-                 h->glass_step_px, h->noise_seed, h->flash_poll_limit, h->node,
-                 h->hardware_revision, h->switches, h->restart, h->build);
-    return length < 0 || (size_t)length >= room ? 0 : (size_t)length;
+    while (*w->at == ' ') {
+        w->at++;
+    }
+    *text = w->at;
+    size_t length = 0;
+    while (w->at[length] != '\0' && w->at[length] != ' ') {
+        length++;
+    }
+    w->at += length;
+    return length <= most ? length : 0;
+}
+
+static int digit_of(char c)
+{
+    return c >= '0' && c <= '9' ? c - '0' : c >= 'a' && c <= 'f' ? c - 'a' + 10 : 16;
+}
+
+/* A number of at most so many digits; 19 decimal and 8 hexadecimal digits fit. */
+static uint64_t number_word(struct words *w, uint32_t base, size_t digits)
+{
+    const char *text;
+    const size_t length = next_word(w, &text, digits);
+    uint64_t value = 0;
+    for (size_t i = 0; i < length; i++) {
+        const uint32_t digit = (uint32_t)digit_of(text[i]);
+        if (digit >= base) {
+            return 0;
+        }
+        value = value * base + digit;
+    }
+    w->count += length > 0;
+    return value;
+}
+
+/* A number below 2^32: its largest value has as many digits as are allowed, 9 or 10. */
+static uint32_t small_word(struct words *w, size_t digits)
+{
+    const uint64_t value = number_word(w, 10, digits);
+    w->count -= value > UINT32_MAX;
+    return value > UINT32_MAX ? 0 : (uint32_t)value;
+}
+
+static void text_word(struct words *w, char *to, size_t room)
+{
+    const char *text;
+    const size_t length = next_word(w, &text, room - 1);
+    memcpy(to, text, length);
+    to[length] = '\0';
+    w->count += length > 0;
+}
+
+static bool is_sound(const struct record_head *h)
+{
+    return h->width_px >= 256 && h->width_px <= 1024 && h->height_px >= 256 &&
+           h->height_px <= 1024 && h->tile_slots <= LM_TILE_SLOTS_MAX && h->node <= 255 &&
+           h->hardware_revision <= 255;
 }
 
 bool record_head_read(struct record_head *h, const char *text)
 {
-    int version;
+    struct words w = {.at = text};
     memset(h, 0, sizeof *h);
-    const int got =
-        sscanf(text,
-               "%9d %15s %19" SCNu64 " %19" SCNu64 " %8" SCNx32 " %31s %8" SCNx32 " %8" SCNx32
-               " %9" SCNu32 " %9" SCNu32 " %9" SCNu32 " %9" SCNu32 " %10" SCNu32 " %9" SCNu32
-               " %9" SCNu32 " %9" SCNu32 " %9" SCNu32 " %23s %15s",
-               &version, h->version, &h->zero_us, &h->image_bytes, &h->image_crc, h->profile,
-               &h->profile_crc, &h->radar_crc, &h->width_px, &h->height_px, &h->tile_slots,
-               &h->glass_step_px, &h->noise_seed, &h->flash_poll_limit, &h->node,
-               &h->hardware_revision, &h->switches, h->restart, h->build);
+    const uint32_t version = small_word(&w, 9);
+    text_word(&w, h->version, sizeof h->version);
+    h->zero_us = number_word(&w, 10, 19);
+    h->image_bytes = number_word(&w, 10, 19);
+    h->image_crc = (uint32_t)number_word(&w, 16, 8);
+    text_word(&w, h->profile, sizeof h->profile);
+    h->profile_crc = (uint32_t)number_word(&w, 16, 8);
+    h->radar_crc = (uint32_t)number_word(&w, 16, 8);
+    h->width_px = small_word(&w, 9);
+    h->height_px = small_word(&w, 9);
+    h->tile_slots = small_word(&w, 9);
+    h->glass_step_px = small_word(&w, 10);
+    h->noise_seed = small_word(&w, 10);
+    h->flash_poll_limit = small_word(&w, 10);
+    h->node = small_word(&w, 9);
+    h->hardware_revision = small_word(&w, 9);
+    h->switches = small_word(&w, 9);
+    text_word(&w, h->restart, sizeof h->restart);
+    text_word(&w, h->build, sizeof h->build);
     for (char *c = h->restart; *c != '\0'; c++) {
         if (*c == '_') {
             *c = ' '; /* a cause is words of capitals */
         }
     }
-    return got == 19 && version == RECORD_VERSION && h->width_px >= 256 && h->width_px <= 1024 &&
-           h->height_px >= 256 && h->height_px <= 1024 && h->tile_slots <= LM_TILE_SLOTS_MAX &&
-           h->node <= 255 && h->hardware_revision <= 255;
+    return w.count == WORDS && version == RECORD_VERSION && is_sound(h);
 }

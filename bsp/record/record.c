@@ -210,24 +210,6 @@ static int acquire(void *ctx, struct lm_surface *surface)
     return status;
 }
 
-uint32_t record_rows_crc(const struct lm_surface *s, uint32_t number)
-{
-    uint32_t crc = 0;
-    for (uint32_t y = number % RECORD_CHECK_ROWS; y < s->height_px; y += RECORD_CHECK_ROWS) {
-        const uint32_t *row = s->pixels + (size_t)y * s->stride_px;
-        uint8_t bytes[3 * 1024];
-        uint32_t n = 0;
-        for (uint32_t x = 0; x < s->width_px && x < 1024; x++) {
-            const uint32_t pixel = row[x] >> s->shift;
-            bytes[n++] = (uint8_t)pixel;
-            bytes[n++] = (uint8_t)(pixel >> 8);
-            bytes[n++] = (uint8_t)(pixel >> 16);
-        }
-        crc = fx_crc32c(crc, bytes, n);
-    }
-    return crc;
-}
-
 static int present(void *ctx, const struct lm_damage *changed)
 {
     struct recorder *r = ctx;
@@ -246,6 +228,20 @@ static int present(void *ctx, const struct lm_damage *changed)
 }
 
 /* ---- begin, steps, end ---- */
+
+size_t record_head_write(const struct record_head *h, char *text, size_t room)
+{
+    const int length =
+        snprintf(text, room,
+                 "%d %s %" PRIu64 " %" PRIu64 " %08" PRIx32 " %s %08" PRIx32 " %08" PRIx32
+                 " %" PRIu32 " %" PRIu32 " %" PRIu32 " %" PRIu32 " %" PRIu32 " %" PRIu32 " %" PRIu32
+                 " %" PRIu32 " %" PRIu32 " %s %s",
+                 RECORD_VERSION, h->version, h->zero_us, h->image_bytes, h->image_crc, h->profile,
+                 h->profile_crc, h->radar_crc, h->width_px, h->height_px, h->tile_slots,
+                 h->glass_step_px, h->noise_seed, h->flash_poll_limit, h->node,
+                 h->hardware_revision, h->switches, h->restart, h->build);
+    return length < 0 || (size_t)length >= room ? 0 : (size_t)length;
+}
 
 static void wrap(struct recorder *r, struct lm_board *board)
 {

@@ -93,7 +93,7 @@ struct record_head {
     uint8_t nodes[LM_BUS_NODE_BYTES]; /* that are heard; without has_nodes all are */
 };
 
-enum { RECORD_HAS_SECOND = 1u << 8 }; /* of the switches */
+enum { RECORD_HAS_TABLE = 1u << 7, RECORD_HAS_SECOND = 1u << 8 }; /* of the switches */
 
 /* Recorder; the caller owns it, and it must not move while the unit runs. */
 struct recorder {

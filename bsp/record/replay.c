@@ -1,24 +1,52 @@
+/* Needs no C library: a browser replays with it too (bsp/web). */
 #include "replay.h"
 
-#include <errno.h>
-#include <stdarg.h>
-#include <stdlib.h>
-#include <string.h>
-
-#include "drv/can_log.h"
+#include "drv/can_line.h"
 #include "fx/crc32c.h"
+#include "fx/mem.h"
 
-static void stop(struct replay *p, const char *format, ...) __attribute__((format(printf, 2, 3)));
+/* ---- errors ---- */
 
-/* The first cause stays. */
-static void stop(struct replay *p, const char *format, ...)
+static void add_text(struct replay *p, const char *text)
+{
+    size_t at = 0;
+    while (p->error[at] != '\0') {
+        at++;
+    }
+    for (; *text != '\0' && at + 1 < sizeof p->error; at++) {
+        p->error[at] = *text++;
+    }
+    p->error[at] = '\0';
+}
+
+static void add_number(struct replay *p, uint64_t value)
+{
+    char digits[21];
+    size_t at = sizeof digits - 1;
+    digits[at] = '\0';
+    do {
+        digits[--at] = (char)('0' + value % 10);
+        value /= 10;
+    } while (value != 0);
+    add_text(p, digits + at);
+}
+
+/* The recording is over. True if no cause was told before: the first one stays. */
+static bool ends(struct replay *p)
 {
     p->next.kind = REPLAY_OVER;
-    if (p->error[0] == '\0') {
-        va_list arguments;
-        va_start(arguments, format);
-        vsnprintf(p->error, sizeof p->error, format, arguments);
-        va_end(arguments);
+    return p->error[0] == '\0';
+}
+
+/* What is wrong with the line read last. */
+static void stop(struct replay *p, const char *cause)
+{
+    if (ends(p)) {
+        add_text(p, p->path);
+        add_text(p, " line ");
+        add_number(p, p->line);
+        add_text(p, ": ");
+        add_text(p, cause);
     }
 }
 
@@ -35,61 +63,44 @@ static void depart(struct replay *p)
 
 /* ---- lines ---- */
 
-/* NAME-003.log after NAME-002.log. False if the name has no such number, or there is no such
- * file. */
-static bool open_next_part(struct replay *p)
+static bool is_same(const char *a, const char *b)
 {
-    const size_t length = strlen(p->path);
-    char *digits = p->path + length - 7; /* "002.log" */
-    unsigned number;
-    if (length < 8 || digits[-1] != '-' || sscanf(digits, "%3u", &number) != 1 || number == 999 ||
-        strcmp(digits + 3, ".log") != 0) {
-        return false;
+    while (*a != '\0' && *a == *b) {
+        a++;
+        b++;
     }
-    char next[8];
-    snprintf(next, sizeof next, "%03u.log", number + 1);
-    memcpy(digits, next, 7);
-    FILE *file = fopen(p->path, "r");
-    if (!file) {
-        return false;
-    }
-    fclose(p->file);
-    p->file = file;
-    p->line = 0;
-    return true;
+    return *a == *b;
 }
 
 static bool is_interface(const char *line, const char *name)
 {
-    const char *c = strchr(line, ' ');
-    const size_t length = strlen(name);
-    return c && strncmp(c + 1, name, length) == 0 && c[1 + length] == ' ';
+    const char *c = line;
+    while (*c != '\0' && *c != ' ') {
+        c++;
+    }
+    for (c += *c == ' '; *name != '\0' && *c == *name; c++) {
+        name++;
+    }
+    return *name == '\0' && *c == ' ';
 }
 
 /* Read a line into the event. False if there is none. */
 static bool read_line(struct replay *p, struct replay_event *e)
 {
     char line[REPLAY_LINE_BYTES];
-    if (!fgets(line, sizeof line, p->file) &&
-        !(open_next_part(p) && fgets(line, sizeof line, p->file))) {
+    const enum replay_line is = p->next_line(p, line);
+    p->line += is != REPLAY_LINE_OVER;
+    p->count.torn += is == REPLAY_LINE_TORN;
+    if (is == REPLAY_LINE_BAD) {
+        stop(p, "no line of a recording");
+    }
+    if (is != REPLAY_LINE) {
         return false;
     }
-    p->line++;
-    const char *end = strchr(line, '\n');
-    if (!end) {
-        const bool is_torn = feof(p->file) || line[0] == '\0'; /* zeros: the power was cut */
-        p->count.torn += is_torn;
-        if (!is_torn) {
-            stop(p, "%s line %u: no line of a recording", p->path, p->line);
-        }
-        return false;
-    }
-    line[end - line] = '\0';
     const char *cause = drv_can_log_parse(line, &e->frame);
     const bool is_own = is_interface(line, RECORD_OWN);
     if (cause || (is_own && (e->frame.id < RECORD_ID || e->frame.id >= RECORD_ID + RECORD_KINDS))) {
-        stop(p, "%s line %u: %s", p->path, p->line,
-             cause ? cause : "the recorder writes no such frame");
+        stop(p, cause ? cause : "the recorder writes no such frame");
         return false;
     }
     e->kind = is_own                               ? REPLAY_OWN
@@ -113,7 +124,7 @@ static bool take_mark(struct replay *p)
     const struct lm_can_frame *f = &p->next.frame;
     if (f->id == RECORD_PART) {
         if (word_of(f) != ++p->part) {
-            stop(p, "%s line %u: part %u is missing before it", p->path, p->line, p->part);
+            stop(p, "a part is missing before it");
         }
         return true;
     }
@@ -135,16 +146,16 @@ static void join_blob(struct replay *p)
     uint32_t got = first.length;
     memcpy(whole, first.data, first.length);
     while (got < wanted) {
-        if (!read_line(p, e) || e->kind != REPLAY_OWN || e->frame.id != first.id ||
-            e->frame.length == 0) {
-            if (e->kind == REPLAY_OWN && e->frame.id == RECORD_CEASED) {
-                (void)take_mark(p); /* lines were lost before it */
-                return;
-            }
-            if (p->error[0] == '\0' && !feof(p->file)) {
-                stop(p, "%s line %u: the lines of a control are not complete", p->path, p->line);
-            }
+        if (!read_line(p, e)) {
             e->kind = REPLAY_OVER;
+            return;
+        }
+        if (e->kind == REPLAY_OWN && e->frame.id == RECORD_CEASED) {
+            (void)take_mark(p); /* lines were lost before it */
+            return;
+        }
+        if (e->kind != REPLAY_OWN || e->frame.id != first.id || e->frame.length == 0) {
+            stop(p, "the lines of a control are not complete");
             return;
         }
         memcpy(whole + got, e->frame.data, e->frame.length);
@@ -167,7 +178,7 @@ static bool take_setting(struct replay *p)
         return true;
     }
     if (e->frame.id == RECORD_RESTART) {
-        snprintf(h->restart, sizeof h->restart, "%.23s", (const char *)e->blob);
+        memcpy(h->restart, e->blob, sizeof h->restart - 1); /* whose last byte stays 0 */
         if (p->board) {
             p->board->restart = h->restart[0] == '\0' ? NULL : h->restart;
         }
@@ -284,7 +295,10 @@ static int fetch(struct replay *p)
         } while (status == LM_BUSY);
     }
     if (status != LM_OK) {
-        stop(p, "the image cannot be read at %llu", (unsigned long long)p->offset);
+        if (ends(p)) {
+            add_text(p, "the image cannot be read at ");
+            add_number(p, p->offset);
+        }
     }
     return status;
 }
@@ -386,7 +400,7 @@ static int next_control(void *ctx, struct lm_control *control)
     const bool is_sound = record_control_read(control, p->next.blob, p->next.blob_bytes);
     take(p);
     if (!is_sound) {
-        stop(p, "%s line %u: no control", p->path, p->line);
+        stop(p, "no control");
     }
     return is_sound;
 }
@@ -396,6 +410,11 @@ static int next_control(void *ctx, struct lm_control *control)
 static size_t pixels(const struct replay *p)
 {
     return (size_t)p->head.width_px * p->head.height_px;
+}
+
+size_t replay_pixels(const struct replay *p)
+{
+    return (1 + REPLAY_BUFFERS) * pixels(p);
 }
 
 static struct lm_surface canvas(const struct replay *p, uint8_t age)
@@ -456,21 +475,14 @@ const uint32_t *replay_glass(const struct replay *p)
 
 /* ---- begin, steps, end ---- */
 
-int replay_open(struct replay *p, const char *path)
+int replay_begin(struct replay *p, enum replay_line (*next_line)(struct replay *, char *))
 {
-    memset(p, 0, sizeof *p);
-    snprintf(p->path, sizeof p->path, "%s", path);
-    p->file = fopen(path, "r");
-    if (!p->file) {
-        snprintf(p->error, sizeof p->error, "%s: %s", path, strerror(errno));
-        return -1;
-    }
+    p->next_line = next_line;
     const bool has_head = is_next(p, RECORD_HEAD);
     if (!has_head || !record_head_read(&p->head, (const char *)p->next.blob)) {
-        snprintf(p->error, sizeof p->error,
-                 has_head ? "%s: a recording of another form" : "%s: does not begin as a recording",
-                 path);
-        replay_close(p);
+        p->error[0] = '\0';
+        add_text(p, p->path);
+        add_text(p, has_head ? ": a recording of another form" : ": does not begin as a recording");
         return -1;
     }
     take(p);
@@ -481,7 +493,7 @@ int replay_open(struct replay *p, const char *path)
 const char *replay_difference(const struct replay *p, const struct record_head *mine)
 {
     const struct record_head *h = &p->head;
-    return strcmp(h->version, mine->version) != 0 ? "another version of the firmware"
+    return !is_same(h->version, mine->version) ? "another version of the firmware"
            : h->image_bytes != mine->image_bytes || h->image_crc != mine->image_crc
                ? "another image"
            : h->profile_crc != mine->profile_crc ? "another table of the bus"
@@ -491,18 +503,7 @@ const char *replay_difference(const struct replay *p, const struct record_head *
 
 bool replay_is_other_build(const struct replay *p)
 {
-    return strcmp(p->head.build, record_build) != 0;
-}
-
-static int lend_pictures(struct replay *p)
-{
-    p->canvas = calloc(pixels(p), sizeof *p->canvas);
-    bool is_complete = p->canvas != NULL;
-    for (uint32_t i = 0; i < REPLAY_BUFFERS; i++) {
-        p->shown[i] = calloc(pixels(p), sizeof *p->canvas);
-        is_complete = is_complete && p->shown[i];
-    }
-    return is_complete ? 0 : -1;
+    return !is_same(p->head.build, record_build);
 }
 
 static void set_board(struct replay *p, struct lm_board *board)
@@ -523,14 +524,16 @@ static void set_board(struct replay *p, struct lm_board *board)
     board->flash_poll_limit = h->flash_poll_limit;
     board->tile_pool_bytes = h->tile_slots * sizeof(struct lm_tile);
     board->bus_nodes = h->has_nodes ? p->head.nodes : NULL;
-    board->restart = strcmp(h->restart, "-") == 0 || h->restart[0] == '\0' ? NULL : p->head.restart;
+    board->restart = is_same(h->restart, "-") || h->restart[0] == '\0' ? NULL : p->head.restart;
 }
 
-int replay_wrap(struct replay *p, struct lm_board *board)
+void replay_wrap_with(struct replay *p, struct lm_board *board, uint32_t *memory)
 {
-    if (lend_pictures(p) != 0) {
-        return -1;
+    p->canvas = memory;
+    for (uint32_t i = 0; i < REPLAY_BUFFERS; i++) {
+        p->shown[i] = memory + (1 + i) * pixels(p);
     }
+    memset(memory, 0, replay_pixels(p) * sizeof *memory);
     set_board(p, board);
     p->image = board->flash;
     p->flash = (struct lm_flash){.ctx = p,
@@ -551,7 +554,6 @@ int replay_wrap(struct replay *p, struct lm_board *board)
     p->board = board;
     board->controls = &p->controls;
     board->display = &p->display;
-    return 0;
 }
 
 /* The next number of the line of steps (record.c). */
@@ -600,7 +602,7 @@ bool replay_step(struct replay *p, uint64_t *now_us)
         }
     }
     if (!take_tick(p, &pause_us) || p->now_us + pause_us < p->now_us) {
-        stop(p, "%s line %u: no time of a step", p->path, p->line);
+        stop(p, "no time of a step");
         return false;
     }
     p->now_us += pause_us;
@@ -611,18 +613,4 @@ bool replay_step(struct replay *p, uint64_t *now_us)
     }
     *now_us = p->now_us;
     return true;
-}
-
-void replay_close(struct replay *p)
-{
-    if (p->file) {
-        fclose(p->file);
-        p->file = NULL;
-    }
-    for (uint32_t i = 0; i < REPLAY_BUFFERS; i++) {
-        free(p->shown[i]);
-        p->shown[i] = NULL;
-    }
-    free(p->canvas);
-    p->canvas = NULL;
 }

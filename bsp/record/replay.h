@@ -13,11 +13,17 @@
 #ifndef REPLAY_H
 #define REPLAY_H
 
-#include <stdio.h>
-
 #include "record.h"
 
 enum { REPLAY_LINE_BYTES = 128, REPLAY_BUFFERS = LM_AGES };
+
+/* What a source of lines answers. */
+enum replay_line {
+    REPLAY_LINE,      /* a line, without its end, and a zero byte */
+    REPLAY_LINE_OVER, /* there are no more */
+    REPLAY_LINE_TORN, /* the last one has no end */
+    REPLAY_LINE_BAD   /* no text, or longer than REPLAY_LINE_BYTES less one */
+};
 
 /* What comes next in the recording. */
 struct replay_event {
@@ -38,7 +44,8 @@ struct replay_event {
 struct replay {
     struct record_head head;
     char path[1024]; /* of the part that is read */
-    FILE *file;      /* owned */
+    void *source;    /* of the lines: in replay_file.c an owned FILE */
+    enum replay_line (*next_line)(struct replay *p, char *line);
     uint32_t line, part;
     struct replay_event next;
     struct {
@@ -60,10 +67,10 @@ struct replay {
     int acquire_status, present_status;
     uint8_t age;
 
-    uint32_t
-        *shown[REPLAY_BUFFERS]; /* owned: the last pictures, the newest at pictures % BUFFERS */
-    uint32_t *canvas;           /* owned: lent to the unit */
-    uint32_t pictures;          /* presented so far */
+    uint32_t *memory;                /* owned by replay_file.c; these lie in it: */
+    uint32_t *shown[REPLAY_BUFFERS]; /* the last pictures, the newest at pictures % BUFFERS */
+    uint32_t *canvas;                /* lent to the unit */
+    uint32_t pictures;               /* presented so far */
 
     bool has_ended;  /* the recording ended in good order: no line of it is missing */
     uint32_t ceased; /* enum record_reason: the recorder gave up at its end, or 0 */
@@ -100,5 +107,14 @@ bool replay_step(struct replay *p, uint64_t *now_us);
 const uint32_t *replay_glass(const struct replay *p);
 
 void replay_close(struct replay *p);
+
+/* The same where there are neither files nor a heap. *p is zero but for `path`, a name for errors,
+ * and `source`. Reads the head from lines of at most REPLAY_LINE_BYTES with the zero. Returns 0; or
+ * -1 with the cause in p->error. */
+int replay_begin(struct replay *p, enum replay_line (*next_line)(struct replay *p, char *line));
+
+/* As replay_wrap, with memory of the caller for so many pixels. */
+size_t replay_pixels(const struct replay *p);
+void replay_wrap_with(struct replay *p, struct lm_board *board, uint32_t *memory);
 
 #endif

@@ -3,44 +3,23 @@
  *
  * A module has one unit. All its memory is static, so that what it takes is known when it is
  * linked. */
-#include "drv/control_ring.h"
-#include "exports.h"
-#include "lm/overlay.h"
-#include "lm/unit.h"
+#include "web.h"
 
-enum { SIDE_MIN_PX = 256, SIDE_MAX_PX = 1024, TILES = 384, FRAMES = 512, POLLS = 1 };
+#include "fx/crc32c.h"
+#include "lm/overlay.h"
 
 /* As many as bench and ZCU102 have, so that the same frames are shown. */
-enum { BUFFERS = 2 };
+enum { BUFFERS = 2, TILES = 384, POLLS = 1 };
 
-/* Frames on their way in. The page puts them in, a step takes them out. */
-struct frame_ring {
-    struct lm_can_frame frame[FRAMES];
-    uint32_t head, tail;
-};
-
-struct web {
-    struct lm_unit unit;
-    struct lm_board board;
-    struct lm_flash flash;
-    struct lm_can can;
-    struct lm_controls controls;
-    struct lm_display display;
-    struct frame_ring frames;
-    struct drv_control_ring acts;
-    struct lm_damage stale; /* what the canvas has not been given yet */
-    uint32_t pictures, frames_lost, acts_lost;
-};
-
-static struct web web;
-static struct lm_tile pool[TILES];
-static uint8_t plane[SIDE_MAX_PX * SIDE_MAX_PX];
-static uint32_t surface[BUFFERS][SIDE_MAX_PX * SIDE_MAX_PX];
-static uint8_t canvas[SIDE_MAX_PX * SIDE_MAX_PX * 4]; /* red, green, blue, opaque */
+struct web web;
+struct lm_tile web_pool[LM_TILE_SLOTS_MAX];
+uint8_t web_plane[WEB_SIDE_MAX_PX * WEB_SIDE_MAX_PX];
+uint32_t web_surface[WEB_SURFACES][WEB_SIDE_MAX_PX * WEB_SIDE_MAX_PX];
+static uint8_t canvas[WEB_SIDE_MAX_PX * WEB_SIDE_MAX_PX * 4]; /* red, green, blue, opaque */
 
 /* ---- devices ---- */
 
-static int read_start(void *ctx, uint64_t offset, void *destination, uint32_t length)
+int web_read_start(void *ctx, uint64_t offset, void *destination, uint32_t length)
 {
     const struct web *w = ctx;
     if (offset > w->flash.size_bytes || length > w->flash.size_bytes - offset) {
@@ -49,7 +28,7 @@ static int read_start(void *ctx, uint64_t offset, void *destination, uint32_t le
     return web_flash_start((double)offset, destination, length);
 }
 
-static int read_poll(void *ctx)
+int web_read_poll(void *ctx)
 {
     (void)ctx;
     return web_flash_poll();
@@ -57,11 +36,11 @@ static int read_poll(void *ctx)
 
 static int receive(void *ctx, struct lm_can_frame *frame)
 {
-    struct frame_ring *r = &((struct web *)ctx)->frames;
+    struct web_frame_ring *r = &((struct web *)ctx)->frames;
     if (r->head == r->tail) {
         return 0;
     }
-    *frame = r->frame[r->tail++ % FRAMES];
+    *frame = r->frame[r->tail++ % WEB_FRAMES];
     return 1;
 }
 
@@ -73,7 +52,7 @@ static int next_control(void *ctx, struct lm_control *control)
 static int acquire(void *ctx, struct lm_surface *s)
 {
     const struct web *w = ctx;
-    *s = (struct lm_surface){.pixels = surface[(w->pictures + 1) % BUFFERS],
+    *s = (struct lm_surface){.pixels = web_surface[(w->pictures + 1) % BUFFERS],
                              .stride_px = w->display.width_px,
                              .width_px = w->display.width_px,
                              .height_px = w->display.height_px,
@@ -93,12 +72,12 @@ static int present(void *ctx, const struct lm_damage *changed)
 
 WEB_EXPORT("open") int web_open(double flash_bytes, uint32_t width_px, uint32_t height_px)
 {
-    if (!(flash_bytes >= 0 && flash_bytes < 9007199254740992.0) || width_px < SIDE_MIN_PX ||
-        width_px > SIDE_MAX_PX || height_px < SIDE_MIN_PX || height_px > SIDE_MAX_PX) {
+    if (!(flash_bytes >= 0 && flash_bytes < 9007199254740992.0) || width_px < WEB_SIDE_MIN_PX ||
+        width_px > WEB_SIDE_MAX_PX || height_px < WEB_SIDE_MIN_PX || height_px > WEB_SIDE_MAX_PX) {
         return LM_ERR_RANGE;
     }
     __builtin_memset(&web, 0, sizeof web);
-    web.flash = (struct lm_flash){&web, (uint64_t)flash_bytes, read_start, read_poll};
+    web.flash = (struct lm_flash){&web, (uint64_t)flash_bytes, web_read_start, web_read_poll};
     web.can = (struct lm_can){&web, receive, NULL};
     web.controls = (struct lm_controls){&web, next_control, NULL};
     web.display =
@@ -108,9 +87,9 @@ WEB_EXPORT("open") int web_open(double flash_bytes, uint32_t width_px, uint32_t 
                           .can = &web.can,
                           .controls = &web.controls,
                           .display = &web.display,
-                          .tile_pool = pool,
-                          .tile_pool_bytes = sizeof pool,
-                          .plane = plane,
+                          .tile_pool = web_pool,
+                          .tile_pool_bytes = TILES * sizeof *web_pool,
+                          .plane = web_plane,
                           .glass_step_px = LM_GLASS_STEP_PX, /* as bench and panel have it */
                           .flash_poll_limit = POLLS};
     return lm_unit_init(&web.unit, &web.board);
@@ -125,12 +104,12 @@ WEB_EXPORT("frame")
 bool web_frame(uint32_t id, bool is_extended, uint32_t length, uint32_t first, uint32_t second,
                double time_us)
 {
-    struct frame_ring *r = &web.frames;
-    if (r->head - r->tail == FRAMES || length > 8) {
+    struct web_frame_ring *r = &web.frames;
+    if (r->head - r->tail == WEB_FRAMES || length > 8) {
         web.frames_lost++;
         return false;
     }
-    struct lm_can_frame *f = &r->frame[r->head++ % FRAMES];
+    struct lm_can_frame *f = &r->frame[r->head++ % WEB_FRAMES];
     *f = (struct lm_can_frame){.id = id,
                                .is_extended = is_extended,
                                .length = (uint8_t)length,
@@ -189,11 +168,22 @@ static void paint_row(uint8_t *to, const uint32_t *from, int32_t pixels)
     }
 }
 
+const uint32_t *web_glass(void)
+{
+    return web.is_replay ? replay_glass(&web.replay) : web_surface[web.pictures % BUFFERS];
+}
+
+WEB_EXPORT("checksum") uint32_t web_checksum(void)
+{
+    const size_t pixels = (size_t)web.display.width_px * web.display.height_px;
+    return fx_crc32c(0, web_glass(), pixels * sizeof(uint32_t));
+}
+
 WEB_EXPORT("paint") uint8_t *web_paint(void)
 {
     const struct lm_rectangle glass = {0, 0, web.display.width_px, web.display.height_px};
     struct lm_damage_walk walk = lm_damage_walk(&glass);
-    const uint32_t *shown = surface[web.pictures % BUFFERS];
+    const uint32_t *shown = web_glass();
     struct lm_rectangle r;
     while (lm_damage_next(&web.stale, &walk, &r)) {
         for (int32_t y = r.top; y < r.bottom; y++) {
@@ -235,8 +225,11 @@ WEB_EXPORT("value") double web_value(enum web_value which)
         return u->page.format == LM_FORMAT_RADAR;
     case WEB_IS_MAP_USABLE:
         return u->map.is_usable;
+    case WEB_REFUSED:
+        return u->count.commands_refused;
+    default:
+        return web_replay_value(which);
     }
-    return -1;
 }
 
 WEB_EXPORT("flag_word") const char *web_flag_word(uint32_t number)

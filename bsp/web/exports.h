@@ -9,14 +9,22 @@
 #include <stdbool.h>
 #include <stdint.h>
 
-#define WEB_EXPORT(name) __attribute__((export_name(name)))
-#define WEB_IMPORT(name) __attribute__((import_module("flash"), import_name(name)))
+#define WEB_EXPORT(name)            __attribute__((export_name(name)))
+#define WEB_IMPORT(name)            WEB_IMPORT_OF("flash", name)
+#define WEB_IMPORT_OF(module, name) __attribute__((import_module(module), import_name(name)))
 
 /* Begin to copy bytes of the flash to an address: an answer of read_start in lm/port.h. */
 WEB_IMPORT("start") int web_flash_start(double offset, void *to, uint32_t length);
 
 /* Ask for the end: an answer of read_poll in lm/port.h. */
 WEB_IMPORT("poll") int web_flash_poll(void);
+
+enum { WEB_LINE_OVER = -1, WEB_LINE_TORN = -2, WEB_LINE_BAD = -3 };
+
+/* The next line of a recording: copies at most `room` characters without the line's end, and
+ * returns how many; WEB_LINE_OVER behind the last one; WEB_LINE_TORN if that has no end;
+ * WEB_LINE_BAD if it is longer, or no text. */
+WEB_IMPORT_OF("recording", "line") int web_recording_line(char *to, uint32_t room);
 
 /* Start the unit, anew if there was one, with a flash of so many bytes and a glass of 256..1024
  * pixels a side. Reads what the unit needs at once; each read has one poll. Returns an answer of
@@ -45,6 +53,25 @@ void web_patch(uint32_t latitude, uint32_t longitude, uint32_t cell_mm);
  * changed since the last call is copied. */
 uint8_t *web_paint(void);
 
+/* CRC-32C of that picture as the firmware has it: four bytes a pixel, blue, green, red, 0. */
+uint32_t web_checksum(void);
+
+/* ---- replay: instead of open, frame, the acts and step ----
+ *
+ * Open the recording whose lines web_recording_line gives, over a flash of so many bytes whose
+ * reads are never late. Returns an answer of lm_unit_init; or LM_ERR_RANGE with the cause in
+ * web_replay_error: no recording, or one of another firmware, image, bus table or radar. With
+ * is_any these may differ. */
+int web_replay_open(double flash_bytes, bool is_any);
+
+/* The next step of the recording; returns its time in microseconds. -1 at the end, also if lines
+ * have yet to come: a growing recording may be stepped while WEB_STEPS_READ is 2 or more, or while
+ * the rest of what happened in the step is there, which a later line of steps shows. */
+double web_replay_step(void);
+
+/* Why the replay could not begin, or ended early; empty: it did not. */
+const char *web_replay_error(void);
+
 enum { WEB_MODE_PATCH = 3 };
 
 /* What a page may ask for; all are whole numbers. */
@@ -61,7 +88,18 @@ enum web_value {
     WEB_ACTS_LOST,
     WEB_LINES_DROPPED,
     WEB_IS_FORMAT_RADAR, /* the radar page is shown, and no other */
-    WEB_IS_MAP_USABLE    /* the image was read, and can be used */
+    WEB_IS_MAP_USABLE,   /* the image was read, and can be used */
+    WEB_REFUSED,         /* controls with a value out of range, or not possible then */
+    /* Of a replay: */
+    WEB_WIDTH_PX,
+    WEB_HEIGHT_PX,
+    WEB_STEPS,
+    WEB_STEPS_READ, /* of the line of steps read last, how many are left */
+    WEB_DEPARTURES, /* struct replay */
+    WEB_CHECKS,
+    WEB_CHECKS_FAILED,
+    WEB_READS_DIFFER,
+    WEB_HAS_ENDED
 };
 
 /* A value, or -1 if there is none of that number. */

@@ -9,10 +9,12 @@
 import {Flash} from './flash.mjs';
 
 const OPEN_TRIES = 400;
+const LINE_OVER = -1; // exports.h
 
 /* enum web_value, in its order. */
 const VALUES = ['pictures', 'flags', 'mode', 'fov', 'rangeNm', 'cursorLatitude', 'cursorLongitude',
-    'isCursorPlaced', 'framesLost', 'actsLost', 'linesDropped', 'isRadarPage', 'isMapUsable'];
+    'isCursorPlaced', 'framesLost', 'actsLost', 'linesDropped', 'isRadarPage', 'isMapUsable', 'refused',
+    'widthPx', 'heightPx', 'steps', 'stepsRead', 'departures', 'checks', 'checksFailed', 'readsDiffer', 'hasEnded'];
 const MODES = ['GM', 'GMT', 'SEA', 'SAR'], FOVS = ['NORM', 'EXP', 'DBS1', 'DBS2'];
 const DEGREES_OF_BAM = 360 / 2 ** 32;
 
@@ -20,10 +22,14 @@ export class Unit {
     static async load(moduleBytes, source) {
         const unit = new Unit();
         unit.flash = new Flash(source);
-        const imports = {flash: unit.flash.imports(() => unit.calls.memory)};
-        const {instance} = await WebAssembly.instantiate(moduleBytes, imports);
-        unit.calls = instance.exports;
+        await unit.start(moduleBytes, unit.flash.imports(() => unit.calls.memory), () => LINE_OVER);
         return unit;
+    }
+
+    /* `line` gives the lines of a recording (recording.mjs). */
+    async start(moduleBytes, flash, line) {
+        const {instance} = await WebAssembly.instantiate(moduleBytes, {flash, recording: {line}});
+        this.calls = instance.exports;
     }
 
     /* Start the unit. What it reads at its start may still be on its way: it is started again until
@@ -87,11 +93,16 @@ export class Unit {
         for (let n = 0; n < 32; n++) {
             const at = flags >>> n & 1 ? this.calls.flag_word(n) : 0;
             if (at) {
-                const bytes = new Uint8Array(this.calls.memory.buffer, at, 16);
-                words.push(String.fromCharCode(...bytes.subarray(0, bytes.indexOf(0))));
+                words.push(this.text(at, 16));
             }
         }
         return words;
+    }
+
+    /* Characters of the module's memory up to a zero byte. */
+    text(at, most) {
+        const bytes = new Uint8Array(this.calls.memory.buffer, at, most);
+        return String.fromCharCode(...bytes.subarray(0, bytes.indexOf(0)));
     }
 
     /* What the glass shows, in a sentence. */

@@ -18,6 +18,7 @@
 #include <stdint.h>
 #include <stdio.h>
 
+#include "drv/can_line.h"
 #include "lm/port.h"
 
 /* Receiver of a report on each line that cannot be read; lines count from 1. */
@@ -61,10 +62,6 @@ struct lm_can drv_can_log_port(struct drv_can_log *log);
 
 /* True if the last frame was delivered and receive has met the end of the log. */
 bool drv_can_log_is_over(const struct drv_can_log *log);
-
-/* Parse one line without its line feed. Returns NULL and *frame, with time_us on the log's clock;
- * or the cause, in static memory, with *frame unspecified. */
-const char *drv_can_log_parse(const char *line, struct lm_can_frame *frame);
 
 /* Write a frame as a line of such a log. `interface` has no blanks. A frame is no controller's
  * report and no remote frame. Returns LM_OK, or LM_ERR_IO when writing failed. */

@@ -1,0 +1,346 @@
+/* A recording of a flight (docs/FORMATS.md, 2.8), flown again by the module: the law is the
+ * firmware's own (bsp/record/replay.c). Runs in a worker or in node, where files and servers can be
+ * read without waiting.
+ *
+ *     const replay = await Replay.load(moduleBytes, image);     image, log: {name, size, read}
+ *     replay.open(new LogLines(log));
+ *     while (replay.step()) { ... replay.nowUs, replay.paint(), replay.checksum() }
+ *     replay.problem()                                          '' if it was the flight recorded
+ *
+ * `read(offset, length)` returns a Uint8Array of that length, or throws. */
+import {Unit} from './unit.mjs';
+
+const BLOCK = 65536, BLOCKS_KEPT = 256; // 16 MiB of an image
+const OK = 0, IO_ERROR = -1;            // lm/status.h
+const OVER = -1, TORN = -2, BAD = -3;   // enum of exports.h
+const LINE_MOST = 127;
+const LINE_FEED = 10;
+const IS_STEPS = / unit 1F4C4D01#/, IS_END = / unit 1F4C4D(0D|11)#/;
+
+/* ---- sources ---- */
+
+/* Bytes of a server, by ranges. In a worker alone: a page may not wait. */
+export function waitingHttpSource(url) {
+    const ask = (range) => {
+        const request = new XMLHttpRequest();
+        request.open('GET', url, false);
+        request.responseType = 'arraybuffer';
+        request.setRequestHeader('Range', range);
+        request.send();
+        return request;
+    };
+    const probe = ask('bytes=0-0'), range = /^bytes 0-0\/(\d+)$/.exec(probe.getResponseHeader('Content-Range') ?? '');
+    if (probe.status !== 206 || !range) {
+        throw new Error(probe.status >= 400 ? `${url}: the server answers ${probe.status}`
+            : `${url}: the server does not serve ranges of bytes; one that does is serve.mjs`);
+    }
+    const read = (offset, length) => {
+        const answer = ask(`bytes=${offset}-${offset + length - 1}`);
+        const bytes = new Uint8Array(answer.response ?? 0);
+        if (answer.status !== 206 || bytes.length !== length) {
+            throw new Error(`${url}: ${bytes.length} bytes with status ${answer.status} instead of ${length}`);
+        }
+        return bytes;
+    };
+    return {name: url, size: Number(range[1]), read};
+}
+
+/* A file that was dropped on the page, in a worker. */
+export function waitingFileSource(file) {
+    const read = (offset, length) =>
+        new Uint8Array(new FileReaderSync().readAsArrayBuffer(file.slice(offset, offset + length)));
+    return {name: file.name, size: file.size, read};
+}
+
+/* Blocks of a source, the last ones kept. */
+class Blocks {
+    constructor(source, kept) {
+        this.source = source;
+        this.kept = kept;
+        this.blocks = new Map();
+    }
+
+    block(n) {
+        const bytes = this.blocks.get(n)
+            ?? this.source.read(n * BLOCK, Math.min(BLOCK, this.source.size - n * BLOCK));
+        this.blocks.delete(n);
+        this.blocks.set(n, bytes);
+        if (this.blocks.size > this.kept) {
+            this.blocks.delete(this.blocks.keys().next().value);
+        }
+        return bytes;
+    }
+
+    copy(offset, to) {
+        for (let done = 0; done < to.length;) {
+            const at = offset + done, block = this.block(Math.floor(at / BLOCK));
+            const part = block.subarray(at % BLOCK, at % BLOCK + to.length - done);
+            to.set(part, done);
+            done += part.length;
+        }
+    }
+}
+
+/* The lines of a recording that is whole. `at` may be kept and set again. */
+export class LogLines {
+    constructor(source) {
+        this.source = source;
+        this.blocks = new Blocks(source, 8);
+        this.at = 0;
+    }
+
+    isReady() {
+        return true;
+    }
+
+    /* Copy a line to bytes; as web_recording_line of exports.h. */
+    next(to) {
+        const most = Math.min(to.length + 1, this.source.size - this.at);
+        if (most <= 0) {
+            return OVER;
+        }
+        let block = this.blocks.block(Math.floor(this.at / BLOCK)).subarray(this.at % BLOCK, this.at % BLOCK + most);
+        if (block.length < most && !block.includes(LINE_FEED)) {
+            block = new Uint8Array(most);
+            this.blocks.copy(this.at, block);
+        }
+        const end = block.indexOf(LINE_FEED);
+        if (end < 0) {
+            return most > to.length && block[0] !== 0 ? BAD : TORN; // zeros: the power was cut
+        }
+        const line = block.subarray(0, end);
+        if (line.includes(0)) {
+            return BAD;
+        }
+        to.set(line);
+        this.at += end + 1;
+        return end;
+    }
+}
+
+/* The lines of a recording that grows: text is put in as it comes. */
+export class FeedLines {
+    constructor() {
+        this.lines = [];
+        this.rest = '';
+        this.at = 0;
+        this.steps = 0; // lines of steps that wait
+        this.isOver = false;
+    }
+
+    put(text) {
+        const lines = (this.rest + text).split('\n');
+        this.rest = lines.pop().slice(0, LINE_MOST + 1);
+        this.lines = this.lines.slice(this.at).concat(lines);
+        this.at = 0;
+        for (const line of lines) {
+            this.steps += IS_STEPS.test(line) ? 1 : 0;
+            this.isOver ||= IS_END.test(line);
+        }
+    }
+
+    /* Microseconds of the log at which the last line of steps begins that came; 0: none did. */
+    get lastUs() {
+        for (let n = this.lines.length - 1; n >= this.at; n--) {
+            if (IS_STEPS.test(this.lines[n])) {
+                this.seenUs = timeOf(this.lines[n]);
+                break;
+            }
+        }
+        return this.seenUs ?? 0;
+    }
+
+    /* What happened in a step is whole when the next line of steps is there. `left`: steps that are
+     * left of the line read last. */
+    isReady(left) {
+        return this.isOver || left > 1 || this.steps >= (left === 1 ? 1 : 2);
+    }
+
+    next(to) {
+        if (this.at === this.lines.length) {
+            return OVER;
+        }
+        const line = this.lines[this.at++];
+        this.steps -= IS_STEPS.test(line) ? 1 : 0;
+        if (line.length > to.length || !/^[\x01-\x7e]*$/.test(line)) {
+            return BAD;
+        }
+        for (let i = 0; i < line.length; i++) {
+            to[i] = line.charCodeAt(i);
+        }
+        return line.length;
+    }
+}
+
+/* Time of a line, in microseconds of its log; NaN: it has none. */
+export function timeOf(line) {
+    const m = /^\((\d{1,12})\.(\d{6})\)/.exec(line);
+    return m ? Number(m[1]) * 1e6 + Number(m[2]) : NaN;
+}
+
+/* First and last time of a recording, of its first and last bytes. */
+export function spanOf(source) {
+    const text = (offset, length) => String.fromCharCode(...source.read(offset, length));
+    const first = timeOf(text(0, Math.min(64, source.size)));
+    const length = Math.min(4096, source.size), times = text(source.size - length, length).split('\n').map(timeOf);
+    return [first, times.filter((us) => us >= first).at(-1) ?? first];
+}
+
+/* ---- replay ---- */
+
+export class Replay extends Unit {
+    static async load(moduleBytes, image) {
+        const replay = new Replay();
+        replay.image = image;
+        replay.blocks = new Blocks(image, BLOCKS_KEPT);
+        replay.hear = null; // called with each line that is read, as bytes
+        replay.read = {offset: 0, to: 0, length: 0};
+        await replay.start(moduleBytes, replay.flashImports(), (to, room) => replay.line(to >>> 0, room >>> 0));
+        return replay;
+    }
+
+    flashImports() {
+        return {
+            start: (offset, to, length) => {
+                this.read = {offset, to: to >>> 0, length: length >>> 0};
+                return OK;
+            },
+            poll: () => {
+                const {offset, to, length} = this.read;
+                try {
+                    this.blocks.copy(offset, new Uint8Array(this.calls.memory.buffer, to, length));
+                    return OK;
+                } catch {
+                    return IO_ERROR;
+                }
+            },
+        };
+    }
+
+    line(to, room) {
+        const bytes = new Uint8Array(this.calls.memory.buffer, to, room);
+        const length = this.lines.next(bytes);
+        if (this.hear && length >= 0) {
+            this.hear(bytes.subarray(0, length));
+        }
+        return length;
+    }
+
+    /* Begin. Throws where the recording cannot be flown with this module and image. */
+    open(lines, isAny = false) {
+        this.lines = lines;
+        this.nowUs = 0;
+        this.shown = 0;
+        this.isOver = false;
+        const status = this.calls.replay_open(this.image.size, isAny);
+        if (status !== 0) {
+            const cause = this.error(), isOther = cause.startsWith('another');
+            throw new Error(isOther ? `the recording was made with ${cause}` : cause || `the unit does not start: status ${status}`);
+        }
+        [this.widthPx, this.heightPx] = [this.value('widthPx'), this.value('heightPx')];
+    }
+
+    /* True if the next step and what happened in it are there. */
+    isReady() {
+        return !this.isOver && this.lines.isReady(this.value('stepsRead'));
+    }
+
+    /* The next step. False at the end. */
+    step() {
+        const us = this.isOver ? -1 : this.calls.replay_step();
+        this.isOver = us < 0;
+        this.nowUs = this.isOver ? this.nowUs : us;
+        return !this.isOver;
+    }
+
+    /* CRC-32C of the picture, as landmass-sim's tests have it. */
+    checksum() {
+        return this.calls.checksum() >>> 0;
+    }
+
+    error() {
+        return this.text(this.calls.replay_error(), 256);
+    }
+
+    /* Why what is shown is not, or no longer, the flight that was recorded. */
+    problem() {
+        const [departures, checks, reads] = ['departures', 'checksFailed', 'readsDiffer'].map((name) => this.value(name));
+        return this.error() || (departures + checks + reads === 0 ? ''
+            : `not the flight recorded: departures ${departures}, checks of the glass failed ${checks}, reads that differ ${reads}`);
+    }
+
+    /* ---- moments: the state of module and log, to go back to ---- */
+
+    /* Pages that are those of `before`, if given, are shared with it. */
+    moment(before) {
+        const pages = copyPages(new Uint8Array(this.calls.memory.buffer), before?.pages);
+        return {pages, at: this.lines.at, us: this.nowUs, pictures: this.value('pictures'), isOver: this.isOver};
+    }
+
+    /* Go back, or on, to a moment of this recording, also one that another replay of it had. */
+    restore({pages, at, us, pictures, isOver}) {
+        const memory = new Uint8Array(this.calls.memory.buffer);
+        pages.forEach((page, n) => {
+            if (page) {
+                memory.set(page, n * BLOCK);
+            } else {
+                memory.fill(0, n * BLOCK, (n + 1) * BLOCK);
+            }
+        });
+        [this.lines.at, this.nowUs, this.isOver, this.shown] = [at, us, isOver, pictures];
+    }
+}
+
+const isZero = (words) => words.every((word) => word === 0n);
+
+function areSame(a, b) {
+    for (let i = 0; i < a.length; i++) {
+        if (a[i] !== b[i]) {
+            return false;
+        }
+    }
+    return true;
+}
+
+/* Memory by pages of 64 KiB; null: all zero. */
+function copyPages(memory, before) {
+    const pages = [];
+    for (let at = 0; at < memory.length; at += BLOCK) {
+        const words = new BigUint64Array(memory.buffer, at, BLOCK / 8), old = before?.[pages.length];
+        const oldWords = old && new BigUint64Array(old.buffer);
+        pages.push(oldWords && areSame(words, oldWords) ? old : isZero(words) ? null : memory.slice(at, at + BLOCK));
+    }
+    return pages;
+}
+
+/* Moments of a flight within so many bytes: where they would take more, every second one goes, and
+ * later ones are twice as far apart. */
+export class Moments {
+    constructor(mostBytes, apartUs = 2e6) {
+        this.mostBytes = mostBytes;
+        this.apartUs = apartUs;
+        this.all = [];
+    }
+
+    get bytes() {
+        return new Set(this.all.flatMap(({pages}) => pages).filter(Boolean)).size * BLOCK;
+    }
+
+    /* Keep where a replay stands, if it is time for it. */
+    keep(replay) {
+        const last = this.all.at(-1);
+        if (last && replay.nowUs < last.us + this.apartUs) {
+            return;
+        }
+        this.all.push(replay.moment(last));
+        while (this.all.length > 2 && this.bytes > this.mostBytes) {
+            this.all = this.all.filter((_, n) => n % 2 === 0);
+            this.apartUs *= 2;
+        }
+    }
+
+    /* The last moment for which a test is true; the first at least. */
+    last(isBefore) {
+        return this.all.findLast(isBefore) ?? this.all[0];
+    }
+}
