@@ -66,6 +66,12 @@ static void report_counters(const struct panel *p)
     const struct lm_sender_counts senders = lm_sender_counts(u);
     report(REPORT_INFO, "senders: %u frames stuck, %u of rivals, %u disagree, %u not on the list",
            senders.stuck, senders.rivals, senders.disagreements, senders.refused);
+    const struct lm_live_bus *live = &u->live;
+    report(REPORT_INFO,
+           "live targets: %u there, %u sets, %u torn, %u refused, %u of rivals, %u aged out; %u "
+           "times one was left out",
+           live->live.count, live->count.sets, live->count.torn, live->count.refused,
+           live->count.rivals, live->count.aged, u->picture.targets_left_out);
     report(REPORT_INFO, "flash: %u tiles, %u bytes, %u read again, %u failed, %u corrupt",
            u->map.tiles.count.tiles_read, (unsigned)u->map.tiles.count.bytes_read,
            atomic_load(&p->flash.count.again), atomic_load(&p->flash.count.failed),

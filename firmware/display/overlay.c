@@ -120,10 +120,11 @@ static void draw_warning(const struct lm_glass *g, int32_t row, int32_t row_dots
 /* The reason that is written below the word of a flag, or "", as for no flag. */
 static const char *reason_of(uint32_t flag, const struct lm_warning_reasons *reasons)
 {
-    return flag == LM_FLAG_DB       ? reasons->database
-           : flag == LM_FLAG_UNABLE ? reasons->unable
-           : flag == LM_FLAG_SENDER ? reasons->sender
-                                    : "";
+    return flag == LM_FLAG_DB         ? reasons->database
+           : flag == LM_FLAG_UNABLE   ? reasons->unable
+           : flag == LM_FLAG_EXERCISE ? reasons->exercise
+           : flag == LM_FLAG_SENDER   ? reasons->sender
+                                      : "";
 }
 
 /* Below the top of the frame a glass has 207 dots: 15 rows a little apart, or 20 close together. */

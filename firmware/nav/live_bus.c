@@ -24,6 +24,11 @@ static uint32_t part_of(uint8_t field)
     return part;
 }
 
+static enum lm_age age_at(const struct lm_live_bus *b, uint64_t heard_us, uint64_t now_us)
+{
+    return lm_age_of(b->stale_us, b->dead_us, heard_us, now_us);
+}
+
 static void remove_target(struct lm_live_bus *b, uint32_t number)
 {
     struct lm_live_target *t = &b->live.target[number];
@@ -109,6 +114,7 @@ static void finish_set(struct lm_live_bus *b, uint32_t number)
     b->live.count += !b->live.target[number].is_there;
     b->live.change++;
     b->live.target[number] = t;
+    b->heard_us[t.node] = t.heard_us;
     b->count.sets++;
 }
 
@@ -163,9 +169,8 @@ void lm_live_bus_take(struct lm_live_bus *b, const struct lm_bus_event *event, u
     b->stale_us = (uint32_t)lm_us_of_ms(event->stale_ms);
     b->dead_us = (uint32_t)lm_us_of_ms(event->dead_ms);
     const struct lm_live_target *t = &b->live.target[event->service];
-    const bool is_rival =
-        t->is_there && t->node != event->node &&
-        lm_age_of(b->stale_us, b->dead_us, t->heard_us, event->time_us) == LM_AGE_GOOD;
+    const bool is_rival = t->is_there && t->node != event->node &&
+                          age_at(b, t->heard_us, event->time_us) == LM_AGE_GOOD;
     if (is_rival) {
         b->count.rivals++;
         return;
@@ -177,10 +182,15 @@ void lm_live_bus_age(struct lm_live_bus *b, uint64_t now_us)
 {
     for (uint32_t i = 0; i < LM_LIVE_AGED_A_STEP; i++) {
         const struct lm_live_target *t = &b->live.target[b->next];
-        if (t->is_there && lm_age_of(b->stale_us, b->dead_us, t->heard_us, now_us) == LM_AGE_DEAD) {
+        b->is_silent_found |= t->is_there && age_at(b, b->heard_us[t->node], now_us) != LM_AGE_GOOD;
+        if (t->is_there && age_at(b, t->heard_us, now_us) == LM_AGE_DEAD) {
             b->count.aged++;
             remove_target(b, b->next);
         }
         b->next = (b->next + 1) % LM_LIVE_MAX;
+        if (b->next == 0) {
+            b->is_silent = b->is_silent_found;
+            b->is_silent_found = false;
+        }
     }
 }

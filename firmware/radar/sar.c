@@ -418,7 +418,7 @@ static uint32_t displaced_most_m(const struct lm_target_candidates *candidates, 
 
 void lm_sar_prefetch_targets(struct lm_sar *s, struct lm_tile_cache *tiles)
 {
-    s->candidates.count = 0;
+    s->candidates.count = s->candidates.left_out = 0;
     if (!s->targets || !lm_target_set_has_any(s->targets)) {
         return;
     }

@@ -543,7 +543,7 @@ static void take_sample(struct lm_sector *s, struct lm_tile_cache *tiles, int32_
         s->samples = (s->sweep << 12) + (uint32_t)sample;
     }
     follow(s);
-    s->live.count = 0;
+    s->live.count = s->live.left_out = 0;
     trace_average(s, tiles, azimuth, line);
     const bool has_steady =
         s->targets && lm_target_set_has_any(s->targets) && add_targets(s, tiles, azimuth, line);

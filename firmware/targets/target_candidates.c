@@ -153,6 +153,46 @@ static void add_live(struct lm_target_candidates *candidates, uint32_t number,
     }
 }
 
+/* Numbers of live targets that a sample or patch may meet. */
+struct met {
+    uint8_t number[LM_LIVE_MAX];
+    uint32_t count;
+};
+
+/* Told cross section in whole dB above -100, 0..DB_STEPS - 1. */
+enum { DB_STEPS = 201 };
+static uint32_t strength_of(const struct lm_live_target *t)
+{
+    return (uint32_t)(fx_clamp_i32(t->rcs_dbsm_q8, LM_DB_Q8(-100), LM_DB_Q8(100)) / 256 + 100);
+}
+
+/* Add those met as far as there is room: the strongest, and of equally strong ones the lowest
+ * numbers. In one beam strength is what decides between them: the width of its cells grows with the
+ * range as their grazing falls. */
+static void add_met(struct lm_target_candidates *candidates, const struct met *met,
+                    const struct lm_target_query *query)
+{
+    const struct lm_live_target *target = candidates->set.live->target;
+    uint32_t left = LM_TARGET_CANDIDATES_MAX - candidates->count, least = DB_STEPS;
+    uint16_t as_strong[DB_STEPS] = {0};
+    for (uint32_t i = 0; i < met->count; i++) {
+        as_strong[strength_of(&target[met->number[i]])]++;
+    }
+    while (least > 0 && as_strong[least - 1] <= left) {
+        left -= as_strong[--least];
+    }
+    for (uint32_t i = 0; i < met->count; i++) {
+        const uint32_t strength = strength_of(&target[met->number[i]]);
+        const bool is_last = strength + 1 == least && left > 0;
+        left -= is_last;
+        if (strength >= least || is_last) {
+            add_live(candidates, met->number[i], query);
+        } else {
+            candidates->left_out++;
+        }
+    }
+}
+
 /* Plane around a position, on which live targets are looked for. */
 struct plane {
     struct lm_position position;
@@ -219,6 +259,8 @@ void lm_target_candidates_add_live(struct lm_target_candidates *candidates,
 {
     const struct lm_live *live = candidates->set.live;
     const struct plane plane = plane_of(query->position);
+    struct met met;
+    met.count = 0;
     for (uint32_t i = 0; live && live->count != 0 && i < LM_LIVE_MAX; i++) {
         const struct lm_live_target *t = &live->target[i];
         struct rough r;
@@ -232,8 +274,11 @@ void lm_target_candidates_add_live(struct lm_target_candidates *candidates,
         const int64_t reach_m_q8 =
             (int64_t)lm_m_q8_of_m(reach_m_of(query, speed_mm_s)) + r.slack_m_q8;
         if (size_of(r.north_m_q8) <= reach_m_q8 && size_of(r.east_m_q8) <= reach_m_q8) {
-            add_live(candidates, i, query);
+            met.number[met.count++] = (uint8_t)i;
         }
+    }
+    if (met.count != 0) {
+        add_met(candidates, &met, query);
     }
 }
 
@@ -260,6 +305,8 @@ void lm_target_candidates_of_line(struct lm_target_candidates *candidates,
      */
     const int64_t width_q15 = (int64_t)line->width * 206 >> 22;
     const int64_t beam_q15 = (int64_t)line->beam * 206 >> 22;
+    struct met met;
+    met.count = 0;
     begin(candidates, set, query);
     for (uint32_t i = 0; i < LM_LIVE_MAX; i++) {
         const struct lm_live_target *t = &set->live->target[i];
@@ -279,9 +326,10 @@ void lm_target_candidates_of_line(struct lm_target_candidates *candidates,
             size_of(shift_m_q8) <= (along_m_q8 * beam_q15 >> 14) + slack_m_q8 &&
             along_m_q8 >= (int64_t)line->begin_m_q8 - slack_m_q8 &&
             along_m_q8 <= (int64_t)line->end_m_q8 + slack_m_q8) {
-            add_live(candidates, i, query);
+            met.number[met.count++] = (uint8_t)i;
         }
     }
+    add_met(candidates, &met, query);
 }
 
 bool lm_target_candidates_refresh(struct lm_target_candidates *candidates,

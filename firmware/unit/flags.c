@@ -83,7 +83,8 @@ uint32_t lm_update_flags(struct lm_unit *u, uint64_t now_us)
         (u->page.is_frozen ? LM_FLAG_FROZEN : 0u) | (u->page.is_override ? LM_FLAG_SILENT : 0u) |
         (u->picture.coverage.is_off_map ? LM_FLAG_OFF_MAP : 0u) |
         (u->weather.is_stale ? LM_FLAG_WEATHER : 0u) |
-        (u->exercise.is_stale || u->malfunctions.is_stale ? LM_FLAG_EXERCISE : 0u) |
+        (u->exercise.is_stale || u->malfunctions.is_stale || u->live.is_silent ? LM_FLAG_EXERCISE
+                                                                               : 0u) |
         (u->malfunctions.now.set != 0 ? LM_FLAG_MALFUNCTION : 0u) |
         (now_us < u->unable.until_us ? LM_FLAG_UNABLE : 0u) |
         (is_bus_silent(u, now_us) ? LM_FLAG_BUS : 0u);

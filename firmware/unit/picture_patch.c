@@ -102,6 +102,7 @@ static enum lm_refusal start(struct lm_picture *p, const struct lm_sar_command *
     lm_page_note_patch(p->lent.page, &command);
     p->patch_loss_db_q8 = loss_db_q8;
     lm_sar_prefetch_targets(&p->sar, &map->tiles);
+    p->targets_left_out += p->sar.candidates.left_out;
     const struct lm_patch_fan fan = {.lines = p->sar.lines,
                                      .cells = cells_of(p),
                                      .centre_m_q8 = p->sar.geometry.centre_m_q8,

@@ -192,6 +192,7 @@ static bool sample_ahead(struct lm_picture *p, uint64_t now_us, uint32_t *azimut
         lm_coverage_add(&p->coverage, &p->line.ground, s->grid.cells);
         /* Looking through the live targets and drawing them takes the time of composing. */
         p->is_step_spent |= lm_target_set_is_live(s->targets);
+        p->targets_left_out += s->live.left_out + s->candidates.left_out;
     }
     return has_all;
 }

@@ -93,8 +93,12 @@ static void show_radar(const struct lm_unit *u, const struct lm_glass *glass)
     lm_overlay_symbols(glass, &symbols);
     const struct lm_text database = lm_unit_map_refusal(&u->map);
     const struct lm_text sender = lm_sender_fault(u);
-    const struct lm_warning_reasons reasons = {database.words, lm_refusal_word(u->unable.reason),
-                                               sender.words};
+    const struct lm_warning_reasons reasons = {
+        .database = database.words,
+        .unable = lm_refusal_word(u->unable.reason),
+        .exercise = u->live.is_silent ? "TARGETS" : "",
+        .sender = sender.words,
+    };
     lm_overlay_warnings(glass, u->flags & ~(uint32_t)LM_FLAG_MALFUNCTION, &reasons);
 }
 

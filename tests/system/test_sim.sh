@@ -173,6 +173,13 @@ for weather in fair storm clear; do
         --script "$work/weather.script" --png "$work/$weather" --size 400x384 --every 0
 done
 check 'the summary says what was taken' printed 'weather: 3 sets taken, 0 torn'
+# Two targets, one of them removed after 3 s: told at 0, 1 and 2 s, and at each second of the flight
+"$build/bin/landmass-nav" --straight 45.97,11,0,2000,150 --seconds 6 --quiet --live 1,3,46.02,11,90,15 \
+    --live 2,13,46.03,11,90,8,-9999,0,0,3 --out "$work/live.log" || exit 1
+check 'a flight with live targets ends well' exits 0 "$sim" --db "$db" --bus "$work/live.log" --json "$work/live.json"
+check 'the summary says what was heard of them' printed \
+    'live targets: 9 sets taken, 0 torn, 0 out of range, 0 frames of a second sender; 1 removed, 0 aged out, 1 there'
+check 'and so does the report' grep -q '"live": *{ *"sets": 9' "$work/live.json"
 check 'rain on the bus is in the sector' test "$(cmp -s "$work/fair/sector.png" "$work/storm/sector.png" && echo same)" = ''
 check 'and lies over a patch, which is not darker for it' \
     test "$(cmp -s "$work/fair/patch.png" "$work/storm/patch.png" && echo same)" = '' -a "$(black storm/patch)" -le "$(black fair/patch)"

@@ -416,6 +416,21 @@ static int judge_again(const struct sim *s)
     return 0;
 }
 
+static void report_live(const struct lm_unit *u)
+{
+    const struct lm_live_bus *l = &u->live;
+    hs_report_object("live");
+    hs_report_put("sets", l->count.sets);
+    hs_report_put("torn", l->count.torn);
+    hs_report_put("refused", l->count.refused);
+    hs_report_put("frames_of_a_second_sender", l->count.rivals);
+    hs_report_put("removed", l->count.removed);
+    hs_report_put("aged_out", l->count.aged);
+    hs_report_put("there", l->live.count);
+    hs_report_put("left_out", u->picture.targets_left_out);
+    hs_report_close();
+}
+
 static void report_bus(const struct sim *s)
 {
     static const struct {
@@ -460,6 +475,7 @@ static void report_bus(const struct sim *s)
     hs_report_put("frames_numbered_above_3", w->count.numbers);
     hs_report_put("frames_of_a_second_sender", w->count.rivals);
     hs_report_close();
+    report_live(u);
 }
 
 static void report_map(const struct lm_unit *u)
@@ -506,6 +522,22 @@ static void report_flight(const struct sim *s)
     hs_report_flag("map_is_usable", u->map.is_usable);
     if (u->map.is_usable) {
         report_map(u);
+    }
+}
+
+static void print_live(const struct lm_unit *u)
+{
+    const struct lm_live_bus *l = &u->live;
+    if (l->count.sets + l->count.torn + l->count.refused + l->count.rivals != 0) {
+        printf(
+            "     live targets: %u sets taken, %u torn, %u out of range, %u frames of a second "
+            "sender; %u removed, %u aged out, %u there at the end\n",
+            l->count.sets, l->count.torn, l->count.refused, l->count.rivals, l->count.removed,
+            l->count.aged, l->live.count);
+    }
+    if (u->picture.targets_left_out != 0) {
+        printf("     targets: %u times one was left out of a beam or patch that had 32\n",
+               u->picture.targets_left_out);
     }
 }
 
@@ -560,6 +592,7 @@ static void print_summary(const struct sim *s)
             "%u of a second sender\n",
             w->count.sets, w->count.torn, w->count.refused, w->count.numbers, w->count.rivals);
     }
+    print_live(u);
     if (!u->map.is_usable) {
         printf("database: not usable, nothing was drawn\n");
         return;

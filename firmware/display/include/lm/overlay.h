@@ -31,7 +31,7 @@ enum lm_flag {
     LM_FLAG_BELOW = 1 << 10,    /* the aircraft is below the map's terrain */
     LM_FLAG_MAGNETIC = 1 << 11, /* the heading is from magnetic north, and there is no variation */
     LM_FLAG_EXERCISE = 1 << 12, /* the sender of the exercise is silent: its clock runs on by
-                                   itself, its malfunctions will end */
+                                   itself, its malfunctions will end, or its live targets go */
     LM_FLAG_SENDER = 1 << 13,   /* a sender of the bus is stuck, has a rival, or is contradicted */
     LM_FLAG_MALFUNCTION = 1 << 14 /* the exercise has broken something: not written over the picture
                                    */
@@ -110,7 +110,8 @@ void lm_overlay_labels(const struct lm_glass *g, const struct lm_page *page);
 
 /* Reasons that are written below the word of their flag; "" for none. Borrowed. */
 struct lm_warning_reasons {
-    const char *database, *unable, *sender; /* of LM_FLAG_DB, LM_FLAG_UNABLE, LM_FLAG_SENDER */
+    const char *database, *unable, *exercise, *sender; /* of LM_FLAG_DB, _UNABLE, _EXERCISE, _SENDER
+                                                        */
 };
 
 /* Write the words of `flags` (enum lm_flag) below each other, from the top of the frame. */

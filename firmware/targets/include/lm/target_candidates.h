@@ -92,8 +92,10 @@ void lm_target_candidates_select(struct lm_target_candidates *candidates,
                                  const struct lm_target_set *set,
                                  const struct lm_target_query *query);
 
-/* Add the live targets within the query's reach, as far as there is room. Cost: 80 instructions for
- * each that is there, and about 1,500 for each that is added. */
+/* Add the live targets within the query's reach: as far as there is room those with the greatest
+ * cross section, in whole dB, and of equal ones the lowest numbers. The others are counted in
+ * left_out. Cost: 2,000 instructions, 80 for each that is there, and about 1,500 for each that is
+ * added. */
 void lm_target_candidates_add_live(struct lm_target_candidates *candidates,
                                    const struct lm_target_query *query);
 
@@ -108,7 +110,8 @@ struct lm_live_line {
 
 /* Select the live targets that the line may show: those that appear within its width, by a plane
  * around the antenna. The query's position is the antenna's now; its time is that of the sweep.
- * Cost: 90 instructions for each live target, and about 1,500 for each selected. */
+ * Of more than LM_TARGET_CANDIDATES_MAX the strongest, as above. Cost: 2,000 instructions, 90 for
+ * each live target, and about 1,500 for each selected. */
 void lm_target_candidates_of_line(struct lm_target_candidates *candidates,
                                   const struct lm_target_set *set,
                                   const struct lm_target_query *query,

@@ -69,8 +69,9 @@ struct lm_picture {
     } acquire;
 
     struct lm_tone tone[LM_PICTURES];
-    int32_t patch_loss_db_q8; /* of the signal by a weak transmitter, at the patch's start */
-    struct lm_line line;      /* work space */
+    uint32_t targets_left_out; /* times that a sample or a patch had no room for one: only grows */
+    int32_t patch_loss_db_q8;  /* of the signal by a weak transmitter, at the patch's start */
+    struct lm_line line;       /* work space */
     struct lm_coverage coverage;
     uint64_t next_line_us; /* when the next line is due */
     bool is_step_spent;    /* a picture or a sweep began in this step, at the cost of a step */

@@ -11,8 +11,10 @@
 
 enum { SIDE_MAX = 1024, GUARD = 64, CANARY = 0x7EADBEEF };
 
-static const struct lm_warning_reasons reasons = {"IMAGE KU  RADAR X", "TOO NEAR",
-                                                  "STUCK NODE 200"};
+static const struct lm_warning_reasons reasons = {.database = "IMAGE KU  RADAR X",
+                                                  .unable = "TOO NEAR",
+                                                  .exercise = "TARGETS",
+                                                  .sender = "STUCK NODE 200"};
 
 /* A surface with a margin around it that nothing may touch. */
 static struct lm_surface make_surface(uint16_t width, uint16_t height)

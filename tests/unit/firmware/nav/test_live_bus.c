@@ -294,6 +294,34 @@ TEST(a_target_that_is_not_told_anew_is_gone_after_10_s)
     free(ear);
 }
 
+/* One of several targets may be late: the node is heard as long as it tells any. */
+TEST(a_node_is_silent_when_it_told_none_of_its_targets_for_3_s)
+{
+    struct ear *ear = open_ear();
+    age(ear, 5 * S);
+    assert_false(ear->live.is_silent);
+    for (uint8_t number = 0; number < 10; number++) {
+        hear_small(ear, (struct from){20, number, number, 5 * S}, 460000000);
+        hear_small(ear, (struct from){21, (uint8_t)(100 + number), number, 5 * S}, 460000000);
+    }
+    hear_small(ear, (struct from){20, 9, 1, 8 * S}, 460000000);
+    hear_small(ear, (struct from){21, 109, 1, 8 * S}, 460000000);
+    age(ear, 11 * S);
+    assert_false(ear->live.is_silent);
+    hear_small(ear, (struct from){20, 9, 2, 11 * S}, 460000000);
+    age(ear, 11 * S + 1); /* node 21 */
+    assert_true(ear->live.is_silent);
+    hear_small(ear, (struct from){21, 109, 2, 11 * S + 1}, 460000000);
+    age(ear, 11 * S + 2);
+    assert_false(ear->live.is_silent);
+    age(ear, 14 * S + 1); /* node 20 */
+    assert_true(ear->live.is_silent);
+    hear(ear, (struct from){20, 0, 0, 14 * S + 1}, 1818, LM_CANAS_UCHAR, 0);
+    age(ear, 14 * S + 1); /* what has no targets is not missed */
+    assert_false(ear->live.is_silent);
+    free(ear);
+}
+
 TEST(frames_remove_one_or_all)
 {
     struct ear *ear = open_ear();

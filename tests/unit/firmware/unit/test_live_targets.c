@@ -3,6 +3,7 @@
 #include "lm/unit.h"
 
 #include "check.h"
+#include "glass_text.h"
 #include "scales.h"
 #include "target_support.h"
 #include "tiny_map.h"
@@ -243,6 +244,92 @@ TEST(all_256_are_drawn)
     tiny_map_close(&map);
 }
 
+/* 72 in a row before the antenna, the last 24 numbers stronger than the others. */
+static void crowd_the_beam(int16_t strong_dbsm)
+{
+    const struct lm_target t = image_mover(46, 11, 0, 0);
+    tell(&t, 0, 7 * S);
+    const struct lm_live_target one = live.target[0];
+    live.count = 72;
+    for (int i = 0; i < 72; i++) {
+        live.target[i] = one;
+        live.target[i].position.latitude += hs_bam(0.00008 * (i * 7 % 72 - 36));
+        live.target[i].position.longitude += hs_bam(0.00008 * (i * 7 % 72 - 36));
+        live.target[i].rcs_dbsm_q8 = (int16_t)((i < 48 ? 20 : strong_dbsm) * 256);
+    }
+}
+
+static void select_all(struct lm_target_candidates *candidates, const struct lm_target_set *set)
+{
+    const struct lm_target_query query = {
+        .position = {hs_bam(46), hs_bam(11)}, .reach_m = 5000, .time_us = 7 * S};
+    lm_target_candidates_select(candidates, set, &query);
+    lm_target_candidates_add_live(candidates, &query);
+}
+
+TEST(where_there_is_no_room_the_strongest_are_taken_and_the_others_counted)
+{
+    static struct lm_target_candidates candidates;
+    static const int16_t strong_dbsm[] = {45, 20, -5};
+    static const int firsts[] = {48, 0, 0};
+    const struct lm_target_set set = {.live = &live};
+    for (int c = 0; c < 3; c++) {
+        crowd_the_beam(strong_dbsm[c]);
+        select_all(&candidates, &set);
+        assert_int_equal(candidates.count, LM_TARGET_CANDIDATES_MAX);
+        assert_int_equal(candidates.left_out, 72 - LM_TARGET_CANDIDATES_MAX);
+        int taken = 0;
+        for (uint32_t i = 0; i < candidates.count; i++) {
+            taken += candidates.candidate[i].index >= firsts[c];
+        }
+        /* All 24 that are stronger, with the first eight of the others; or the first 32. */
+        assert_int_equal(taken, c == 0 ? 24 : 32);
+        assert_int_equal(candidates.candidate[0].index, 0);
+        assert_int_equal(candidates.candidate[31].index, c == 0 ? 71 : 31);
+    }
+    /* As many as there is room for beside the image's: all. */
+    const struct lm_target image = image_mover(46, 11, 0, 0);
+    const struct lm_target_set both = {.items = &image, .count = 1, .live = &live};
+    for (int i = 31; i < 72; i++) {
+        live.target[i].is_there = false;
+    }
+    select_all(&candidates, &both);
+    assert_int_equal(candidates.count, 32);
+    assert_int_equal(candidates.left_out, 0);
+    live.target[31].is_there = true;
+    select_all(&candidates, &both);
+    assert_int_equal(candidates.left_out, 1);
+}
+
+/* What a crowded beam shows of strong ones is what it shows of them alone. */
+TEST(strong_targets_are_not_lost_in_a_crowded_beam)
+{
+    static int32_t all[LINES_MAX][SIDE], strong[LINES_MAX][SIDE], without[LINES_MAX][SIDE];
+    const struct lm_target_set none = {0}, live_set = {.live = &live};
+    open_soil();
+    for (size_t v = 0; v < sizeof views / sizeof *views; v++) {
+        sweep(views[v], &none, without);
+        crowd_the_beam(45);
+        sweep(views[v], &live_set, all);
+        for (int i = 0; i < 48; i++) {
+            live.target[i].is_there = false;
+        }
+        sweep(views[v], &live_set, strong);
+        int lost = 0, bright = 0;
+        for (int k = 0; k < LINES_MAX * SIDE; k++) {
+            const int level = strong[k / SIDE][k % SIDE];
+            const bool is_bright = level > without[k / SIDE][k % SIDE] + 6 * 256;
+            bright += is_bright;
+            lost += is_bright && all[k / SIDE][k % SIDE] < level - 256;
+        }
+        print_message("# mode %d field %d: %d cells bright, %d lost\n", views[v].mode, views[v].fov,
+                      bright, lost);
+        assert_int_equal(lost, 0);
+        assert_true(views[v].mode == LM_SECTOR_GMT || bright > 0);
+    }
+    tiny_map_close(&map);
+}
+
 /* ---- patches ---- */
 
 static void draw_patch(const struct lm_target_set *set, uint8_t picture[SIDE][SIDE])
@@ -391,6 +478,15 @@ static int receive(void *ctx, struct lm_can_frame *frame)
     return feed.flight->receive(feed.flight->ctx, frame);
 }
 
+/* The reason stands below the flag on the glass. */
+static bool says_targets(const struct rig *r)
+{
+    const struct lm_surface glass = glass_of(r);
+    const struct lm_palette *palette = &r->unit.palette;
+    return glass_find(&glass, "EXC", palette->warning, palette->ink, NULL) &&
+           glass_find(&glass, "TARGETS", palette->warning, palette->ink, NULL);
+}
+
 TEST(the_unit_takes_256_live_targets_at_1_hz_and_loses_none)
 {
     struct rig *r = fly_rig();
@@ -414,12 +510,21 @@ TEST(the_unit_takes_256_live_targets_at_1_hz_and_loses_none)
     print_message("# %u frames, %u sets, %u lines, %u dropped\n", feed.sent, b->count.sets,
                   r->unit.count.lines - lines, r->unit.count.lines_dropped - dropped);
     assert_int_equal(r->unit.count.lines_dropped, dropped);
+    assert_false(r->unit.flags & LM_FLAG_EXERCISE);
     feed.is_silent = true;
-    run(r, 9);
+    run(r, 2.9);
+    assert_false(r->unit.flags & LM_FLAG_EXERCISE);
+    run(r, 0.5);
+    assert_true(r->unit.flags & LM_FLAG_EXERCISE);
+    assert_true(says_targets(r));
+    run(r, 5.6);
     assert_int_equal(b->live.count, LM_LIVE_MAX);
     run(r, 2.2);
     assert_int_equal(b->live.count, 0);
     assert_int_equal(b->count.aged, LM_LIVE_MAX);
+    assert_false(r->unit.flags & LM_FLAG_EXERCISE);
+    run(r, 0.2);
+    assert_false(says_targets(r));
     r->unit.board = was;
     free_rig(r);
 }
