@@ -54,17 +54,78 @@ static bool is_due(double at_s, double now_s, double period_s)
     return at_s >= now_s && at_s < now_s + period_s;
 }
 
-/* Where it is and goes: along the geodesic, or along the chord of its circle. */
-static void place_at(const struct nav_live_item *t, double seconds, double *latitude_deg,
-                     double *longitude_deg, double *course_deg)
+/* Where it is and goes. */
+struct state {
+    double latitude_deg, longitude_deg, height_m, course_deg, speed_ms;
+};
+
+/* Along the geodesic, or along the chord of its circle. */
+static struct state straight_at(const struct nav_live_item *t, double seconds)
 {
     struct geod_geodesic earth;
+    struct state s = {.height_m = t->height_m, .speed_ms = t->speed_ms};
     const double half = t->turn_deg_s * seconds / 2, x = half * M_PI / 180;
     const double chord = fabs(x) < 1e-6 ? 1 : sin(x) / x;
     geod_init(&earth, 6378137.0, 1 / 298.257223563);
     geod_direct(&earth, t->latitude_deg, t->longitude_deg, t->course_deg + half,
-                t->speed_ms * seconds * chord, latitude_deg, longitude_deg, course_deg);
-    *course_deg += half;
+                t->speed_ms * seconds * chord, &s.latitude_deg, &s.longitude_deg, &s.course_deg);
+    s.course_deg += half;
+    return s;
+}
+
+/* Along the geodesic from point `a` to the one behind it, `seconds` after it left. One that stands
+ * has no course: `course_deg` is NAN. */
+static struct state leg_at(const struct nav_live_point *a, double seconds)
+{
+    const struct nav_live_point *b = a + 1;
+    struct geod_geodesic earth;
+    struct state s;
+    double way_m, from_deg;
+    geod_init(&earth, 6378137.0, 1 / 298.257223563);
+    geod_inverse(&earth, a->latitude_deg, a->longitude_deg, b->latitude_deg, b->longitude_deg,
+                 &way_m, &from_deg, NULL);
+    const double part = seconds / (b->at_s - a->at_s);
+    geod_direct(&earth, a->latitude_deg, a->longitude_deg, from_deg, way_m * part, &s.latitude_deg,
+                &s.longitude_deg, &s.course_deg);
+    s.speed_ms = way_m / (b->at_s - a->at_s);
+    s.height_m =
+        isinf(a->height_m) ? a->height_m : a->height_m + (b->height_m - a->height_m) * part;
+    s.course_deg = way_m < 0.01 ? (double)NAN : s.course_deg;
+    return s;
+}
+
+/* On its route at a time. Where it stands, it faces as it came; at first, as it will go. */
+static struct state route_at(const struct nav_live *l, const struct nav_live_item *t, double at_s)
+{
+    const struct nav_live_point *p = &l->point[t->first_point], *last = p + t->points - 1;
+    const struct nav_live_point *leg = p;
+    while (leg < last && leg[1].at_s <= at_s) {
+        leg++;
+    }
+    struct state s = {leg->latitude_deg, leg->longitude_deg, leg->height_m, (double)NAN, 0};
+    if (leg < last) {
+        s = leg_at(leg, at_s - leg->at_s);
+    }
+    for (const struct nav_live_point *q = leg; isnan(s.course_deg) && q > p; q--) {
+        s.course_deg = leg_at(q - 1, q->at_s - q[-1].at_s).course_deg;
+    }
+    for (const struct nav_live_point *q = leg; isnan(s.course_deg) && q < last; q++) {
+        s.course_deg = leg_at(q, 0).course_deg;
+    }
+    s.course_deg = isnan(s.course_deg) ? 0 : s.course_deg;
+    return s;
+}
+
+/* True in the first minor frame that begins at one of its points or behind it. */
+static bool is_at_point(const struct nav_live *l, const struct nav_live_item *t, double now_s,
+                        double period_s)
+{
+    bool is_at = false;
+    for (int i = 0; i < t->points; i++) {
+        const double at_s = l->point[t->first_point + i].at_s;
+        is_at = is_at || (at_s <= now_s && at_s > now_s - period_s);
+    }
+    return is_at;
 }
 
 static uint32_t pair(double first, double second)
@@ -82,26 +143,24 @@ static struct canas_frame frame_of(uint16_t id, enum canas_type type, int number
                                          (uint8_t)(word >> 8), (uint8_t)word}};
 }
 
-static int put_set(const struct nav_live_item *t, uint8_t code, double seconds,
+static int put_set(const struct nav_live_item *t, uint8_t code, const struct state *s,
                    struct canas_frame frames[NAV_LIVE_FRAMES])
 {
-    double latitude, longitude, course;
-    place_at(t, seconds, &latitude, &longitude, &course);
-    const bool has_height = t->height_m >= -1000;
+    const bool has_height = s->height_m >= -1000;
     const int parts = (has_height ? HAS_HEIGHT : 0) | HAS_VELOCITY | HAS_HEADING;
-    const float height = (float)t->height_m;
+    const float height = (float)s->height_m;
     uint32_t height_bits;
     memcpy(&height_bits, &height, sizeof height_bits);
-    const double angle = course * M_PI / 180, counts = t->speed_ms / 0.05;
+    const double angle = s->course_deg * M_PI / 180, counts = s->speed_ms / 0.05;
     /* A heading of 180 degrees is 32768, which is -32768 in 16 bits. */
-    const double heading = remainder(course, 360) / 180 * 32768;
+    const double heading = remainder(s->course_deg, 360) / 180 * 32768;
     int n = 0;
     frames[n++] = frame_of(CANAS_LIVE_KIND, CANAS_UCHAR4, t->number, code,
                            (uint32_t)t->kind << 24 | RPB << 16 | (uint32_t)parts);
     frames[n++] = frame_of(CANAS_LIVE_LATITUDE, CANAS_LONG, t->number, code,
-                           (uint32_t)(int32_t)lround(latitude * 1e7));
+                           (uint32_t)(int32_t)lround(s->latitude_deg * 1e7));
     frames[n++] = frame_of(CANAS_LIVE_LONGITUDE, CANAS_LONG, t->number, code,
-                           (uint32_t)(int32_t)lround(longitude * 1e7));
+                           (uint32_t)(int32_t)lround(s->longitude_deg * 1e7));
     if (has_height) {
         frames[n++] = frame_of(CANAS_LIVE_HEIGHT, CANAS_FLOAT, t->number, code, height_bits);
     }
@@ -123,8 +182,11 @@ int nav_live_frames(const struct nav_live *l, int index, struct canas_codes *cod
     }
     const double phase_s = (double)index / NAV_LIVE_MAX;
     const bool is_told = now_s >= t->from_s && now_s < t->until_s;
-    if (!is_told || !is_due(ceil(now_s - phase_s) + phase_s, now_s, period_s)) {
+    if (!is_told || (!is_due(ceil(now_s - phase_s) + phase_s, now_s, period_s) &&
+                     !is_at_point(l, t, now_s, period_s))) {
         return 0;
     }
-    return put_set(t, codes->next[CANAS_LIVE_KIND]++, sent_s - t->from_s, frames);
+    const struct state s =
+        t->points > 0 ? route_at(l, t, sent_s) : straight_at(t, sent_s - t->from_s);
+    return put_set(t, codes->next[CANAS_LIVE_KIND]++, &s, frames);
 }

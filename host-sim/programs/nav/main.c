@@ -179,6 +179,9 @@ static int run(struct command *c, struct nav_track *t)
 {
     struct findings found = {0};
     struct nav_sent sent;
+    if (c->live_path && nav_live_read(&c->send.live, c->live_path) != 0) {
+        return -1;
+    }
     if (get_track(c, t, &found) != 0) {
         return -1;
     }

@@ -201,6 +201,10 @@ static bool read_table(struct command *c, struct raw *raw, int argc, char **argv
          "height above mean sea level, or on the ground where that is left out or below -1000, "
          "and is removed at UNTIL_S; kinds are those of docs/bus.md; up to 256",
          false},
+        {"live-routes", HS_INPUT, &c->live_path, 0, 0, "FILE",
+         "tell of the live targets of a file, each with places on its way and when it is there or "
+         "how fast it goes",
+         false},
         {"exercise-clock", HS_REAL, &raw->clock_s, 0, 2147483, "S",
          "tell the clock of an exercise that began S seconds before the log, once a second: what "
          "moves or fluctuates in the display follows it",

@@ -8,7 +8,8 @@
 
 struct command {
     const char *track_path;
-    const char *out_path; /* NULL: standard output */
+    const char *out_path;  /* NULL: standard output */
+    const char *live_path; /* routes of live targets; NULL: none */
     enum nav_format format;
     bool is_strict, is_quiet, has_circle, has_straight, has_begin;
     struct nav_circle circle;

@@ -6,10 +6,22 @@
 
 #include <stdbool.h>
 
-enum { NAV_LIVE_MAX = 256, NAV_LIVE_FRAMES = 6, NAV_LIVE_KINDS = 17 };
+enum {
+    NAV_LIVE_MAX = 256,
+    NAV_LIVE_FRAMES = 6,
+    NAV_LIVE_KINDS = 17,
+    NAV_LIVE_POINTS = 4096, /* of all routes */
+    NAV_LIVE_SPEED_MOST_MS = 1000
+};
 
-/* A target that goes straight on or turns evenly, told once a second from `from_s` until before
- * `until_s`, seconds from the log's beginning, and then removed. */
+/* Place of a route, and when the target is there. */
+struct nav_live_point {
+    double at_s, latitude_deg, longitude_deg;
+    double height_m; /* as below, minus infinity: on the ground; alike in all points of a route */
+};
+
+/* A target that goes straight on or turns evenly, or follows a route; told once a second from
+ * `from_s` until before `until_s`, seconds from the log's beginning, and then removed. */
 struct nav_live_item {
     int number, kind;
     double latitude_deg, longitude_deg; /* at from_s */
@@ -17,11 +29,14 @@ struct nav_live_item {
     double height_m; /* above mean sea level; below -1000: on the ground */
     double turn_deg_s;
     double from_s, until_s;
+    int first_point, points; /* of its route; 0 points: it has none */
 };
 
 struct nav_live {
     struct nav_live_item item[NAV_LIVE_MAX];
     int count;
+    struct nav_live_point point[NAV_LIVE_POINTS]; /* route behind route */
+    int point_count;
 };
 
 /* Take the numbers of --live NUMBER,KIND,LAT,LON,COURSE_DEG,SPEED_MS[,HEIGHT_M[,TURN_DEG_S
@@ -29,9 +44,13 @@ struct nav_live {
  * taken. */
 bool nav_live_add(struct nav_live *l, const double *value, int count);
 
+/* Add the targets of a file of routes. Times ascend, and no leg is faster than
+ * NAV_LIVE_SPEED_MOST_MS. Returns 0, or -1 with the mistake reported. */
+int nav_live_read(struct nav_live *l, const char *path);
+
 /* The frames of target `index` to send in the minor frame that begins `now_s` after the log's
  * beginning and lasts `period_s`; returns how many. Its numbers are those of `sent_s`. Targets are
- * spread over the second by their index. */
+ * spread over the second by their index. One with a route is told at each of its points as well. */
 int nav_live_frames(const struct nav_live *l, int index, struct canas_codes *codes, double now_s,
                     double period_s, double sent_s, struct canas_frame frames[NAV_LIVE_FRAMES]);
 

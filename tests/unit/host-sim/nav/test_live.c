@@ -150,3 +150,120 @@ TEST(what_is_out_of_range_is_not_taken)
     assert_int_equal(l->count, 1);
     free(l);
 }
+
+/* ---- routes ---- */
+
+static int read_text(struct nav_live *l, const char *text)
+{
+    char path[] = "/tmp/routes-XXXXXX";
+    const int fd = mkstemp(path);
+    assert_true(fd >= 0);
+    FILE *out = fdopen(fd, "w");
+    fputs(text, out);
+    fclose(out);
+    const int status = nav_live_read(l, path);
+    remove(path);
+    return status;
+}
+
+static const char convoy[] =
+    "# a convoy, a fighter, and one that stands\n"
+    "target 1 3\n"
+    "  at 0 46.1 11\n"
+    "  speed 20 46.1 11.001 # some 77 m: four seconds\n"
+    "  at 10 46.1 11.001    # stands there\n"
+    "  at 14 46.1005 11.001\n"
+    "  gone\n"
+    "target 2 7\n"
+    "  at 2 46.2 11.1 4000\n"
+    "  speed 200 46.3 11.1 5000\n"
+    "target 9 13\n"
+    "  at 5 46.05 11.1\n";
+
+/* Where the first target is by its file. */
+static void place_of_convoy(double seconds, double *latitude, double *longitude)
+{
+    const double first_s = wgs84_metres(46.1, 11, 46.1, 11.001) / 20;
+    const double part = fmin(1, seconds / first_s), up = fmax(0, (seconds - 10) / 4);
+    *latitude = 46.1 + 0.0005 * up;
+    *longitude = 11 + 0.001 * part;
+}
+
+static void compare_convoy(struct ear *ear, const struct nav_live *l)
+{
+    (void)l;
+    const double now_s = (double)(ear->now_us - ear->begin_us) * 1e-6;
+    const struct lm_live_target *first = &ear->live.live.target[1];
+    if (first->is_there) {
+        double latitude, longitude;
+        place_of_convoy(now_s, &latitude, &longitude);
+        const struct lm_position at = lm_live_at(first, ear->now_us).position;
+        ear->worst_m = fmax(ear->worst_m, wgs84_metres(latitude, longitude, hs_degrees(at.latitude),
+                                                       hs_degrees(at.longitude)));
+    }
+}
+
+/* Told at each place as well as once a second, it never overshoots by more than the way of a minor
+ * frame and a set. */
+TEST(targets_follow_their_routes)
+{
+    struct nav_live *l = calloc(1, sizeof *l);
+    struct ear *ear = calloc(1, sizeof *ear);
+    assert_int_equal(read_text(l, convoy), 0);
+    assert_int_equal(l->count, 3);
+    send(l, 20, ear, compare_convoy);
+    print_message("# %u sets, within %.2f m\n", ear->live.count.sets, ear->worst_m);
+    assert_true(ear->worst_m < 0.6);
+    assert_int_equal(ear->live.count.torn + ear->live.count.refused, 0);
+    const struct lm_live_target *t = ear->live.live.target;
+    assert_false(t[1].is_there); /* gone at 14 s */
+    assert_int_equal(ear->live.count.removed, 1);
+    assert_true(t[2].is_there && t[2].has_height);
+    const struct lm_live_state s = lm_live_at(&t[2], ear->now_us);
+    assert_in_range(s.speed_mm_s, 199900, 200100);
+    const double way_m =
+        wgs84_metres(46.2, 11.1, hs_degrees(s.position.latitude), hs_degrees(s.position.longitude));
+    assert_true(fabs(way_m - 18 * 200) < 5);
+    assert_true(fabs(t[2].height_m_q6 / 64.0 - 4000 - 1000 * 17.5 / 55.6) < 20);
+    assert_true(t[9].is_there && !t[9].has_height);
+    assert_int_equal(lm_live_at(&t[9], ear->now_us).speed_mm_s, 0);
+    free(ear);
+    free(l);
+}
+
+TEST(mistakes_in_a_file_of_routes_are_refused)
+{
+    static const char *const bad[] = {"",
+                                      "at 0 46 11\n",
+                                      "gone\n",
+                                      "target 256 3\n at 0 46 11\n",
+                                      "target 1 17\n at 0 46 11\n",
+                                      "target 1\n at 0 46 11\n",
+                                      "target 1 3\n",
+                                      "target 1 3\ntarget 2 3\n at 0 46 11\n",
+                                      "target 1 3\n at 0 46 11\ntarget 1 3\n at 0 46 11\n",
+                                      "target 1 3\n at 0 91 11\n",
+                                      "target 1 3\n at 0 46 181\n",
+                                      "target 1 3\n at 0 46 11 16001\n",
+                                      "target 1 3\n at -1 46 11\n",
+                                      "target 1 3\n at 0 46\n",
+                                      "target 1 3\n at 0 46 11 1 2\n",
+                                      "target 1 3\n speed 3 46 11\n",
+                                      "target 1 3\n at 5 46 11\n at 5 46.01 11\n",
+                                      "target 1 3\n at 0 46 11\n speed 0 46.1 11\n",
+                                      "target 1 3\n at 0 46 11\n speed 3 46 11\n",
+                                      "target 1 3\n at 0 46 11\n at 1 46.1 11\n",
+                                      "target 1 3\n at 0 46 11 9\n at 9 46.001 11\n",
+                                      "target 1 3\n at 0 46 11\n gone\n",
+                                      "target 1 3\n at 0 46 11\n at 9 46 11\n gone\n gone\n",
+                                      "target 1 3\n at 0 46 11\n at 9 46 11\n gone\n at 10 46 11\n",
+                                      "target 1 3\n at 0 46 11\n stay 9\n",
+                                      "target 1 3\n at nan 46 11\n"};
+    struct nav_live *l = calloc(1, sizeof *l);
+    for (size_t i = 0; i < sizeof bad / sizeof *bad; i++) {
+        memset(l, 0, sizeof *l);
+        print_message("# %zu\n", i);
+        assert_int_equal(read_text(l, bad[i]), -1);
+    }
+    free(l);
+}
