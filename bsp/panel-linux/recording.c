@@ -64,6 +64,9 @@ void recording_begin(struct recording *r, struct lm_board *board, uint64_t now_u
         return;
     }
     if (r->recorder.can != NULL) { /* again: its ports as they were */
+        if (board->flash == &r->recorder.flash_of_unit) {
+            board->flash = r->recorder.flash;
+        }
         board->can = r->recorder.can;
         board->can_2 = r->recorder.can_2;
         board->controls = r->recorder.controls;

@@ -3,6 +3,7 @@
 #include "check.h"
 #include "lm/radar_record.h"
 #include "panel.h"
+#include "shown.h"
 #include "support.h"
 #include "unit_rig.h"
 
@@ -76,6 +77,8 @@ struct flight {
     struct config config;
     struct panel panel;
     struct lm_can counted;
+    struct shown *shown; /* where the pictures are noted; NULL: nowhere */
+    bool is_switched_off;
 };
 
 static int receive(void *ctx, struct lm_can_frame *frame)
@@ -85,11 +88,19 @@ static int receive(void *ctx, struct lm_can_frame *frame)
     return f->rig->board.can.receive(f->rig->board.can.ctx, frame);
 }
 
+static void path_in_build(char *path, size_t size, const char *name)
+{
+    snprintf(path, size, "%s/tmp/%s", support_build_dir(), name);
+}
+
+/* The usual flight is recorded. */
 static struct flight *take_off(void)
 {
     struct flight *f = calloc(1, sizeof *f);
     f->rig = make_rig();
     f->config = nothing_fitted();
+    path_in_build(f->config.record, sizeof f->config.record, "panel-recordings");
+    support_run("rm -rf %s", f->config.record);
     support_run("mkdir -p %s/tmp", support_build_dir());
     snprintf(f->config.database, sizeof f->config.database, "%s/tmp/panel-test.lmdb",
              support_build_dir());
@@ -100,9 +111,17 @@ static struct flight *take_off(void)
     return f;
 }
 
+static void switch_off(struct flight *f)
+{
+    if (!f->is_switched_off) {
+        panel_close(&f->panel);
+        f->is_switched_off = true;
+    }
+}
+
 static void land(struct flight *f)
 {
-    panel_close(&f->panel);
+    switch_off(f);
     unlink(f->config.database);
     free_rig(f->rig);
     free(f);
@@ -116,7 +135,11 @@ static void fly(struct flight *f, double seconds)
     for (const uint64_t end = r->now_us + (uint64_t)(seconds * 1e6); r->now_us < end;
          r->now_us += PANEL_TICK_US) {
         r->bus.now_us = r->now_us;
+        const uint32_t before = f->panel.glass.count.pictures;
         panel_step(&f->panel, r->now_us);
+        if (f->shown && f->panel.glass.count.pictures != before) {
+            shown_note(f->shown, f->panel.glass.picture.pixels, WIDTH * HEIGHT);
+        }
         nanosleep(&rest, NULL);
     }
 }
@@ -174,6 +197,32 @@ TEST(from_the_first_step_on_the_loop_allocates_nothing)
     void *volatile one = malloc(1);       /* volatile: or the compiler would see through it */
     assert_int_equal(allocations, before + 1);
     free(one);
+    land(f);
+}
+
+TEST(what_a_panel_recorded_is_shown_again_bit_for_bit)
+{
+    static struct shown shown;
+    struct flight *f = take_off();
+    char path[200];
+    f->shown = &shown;
+    fly(f, 3);
+    look_closely(f);
+    fly(f, 3);
+    assert_null(f->panel.recording.trouble);
+    assert_int_equal(f->panel.recording.count.lines_lost, 0);
+    struct drv_flash_file flash;
+    assert_int_equal(drv_flash_file_open(&flash, f->config.database), 0);
+    switch_off(f); /* the recording is whole now */
+    snprintf(path, sizeof path, "%s/flight-00001-000.log", f->config.record);
+    const struct shown_again a = show_again(path, &flash.port, NULL, &shown);
+    assert_string_equal(a.error, "");
+    assert_int_equal(a.pictures, shown.count);
+    assert_true(a.pictures > 180);
+    assert_int_equal(a.wrong, 0);
+    assert_int_equal(a.departures + a.checks_failed, 0);
+    assert_true(a.has_ended && a.checks >= 6);
+    drv_flash_file_close(&flash);
     land(f);
 }
 
