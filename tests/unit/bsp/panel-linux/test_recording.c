@@ -242,6 +242,7 @@ TEST(a_session_that_alone_fills_the_room_ends_with_a_word)
         }
         fly_about(f);
         fly(f, 2);
+        assert_non_null(f->recording.trouble);
         assert_string_equal(f->recording.trouble, "recording ended: full");
         const uint32_t flown = f->shown.count;
         recording_close(&f->recording);
@@ -279,6 +280,26 @@ TEST(a_ring_that_overflows_is_said_and_counted_and_the_unit_flies_on)
     assert_string_equal(a.error, "");
     assert_in_range(a.pictures, 10, 59);
     assert_int_equal(a.wrong + a.departures, 0);
+    land(f);
+}
+
+TEST(after_a_line_that_was_lost_none_is_taken_though_there_is_room)
+{
+    struct flight *f = prepare("gap");
+    struct recording_limits limits = small;
+    const uint8_t *bytes;
+    limits.ring_bytes = 1 << 13;
+    recording_open(&f->recording, f->folder, &limits);
+    recording_begin(&f->recording, &f->board, 0);
+    assert_int_equal(lm_unit_init(&f->rig->unit, &f->board), LM_OK);
+    fly(f, 2);
+    assert_true(byte_ring_peek(&f->recording.ring, &bytes) > 200);
+    byte_ring_drop(&f->recording.ring, 200); /* too little for the word that ends it */
+    const size_t head = f->recording.ring.head;
+    const uint32_t lost = f->recording.count.lines_lost;
+    fly(f, 0.5);
+    assert_int_equal(f->recording.ring.head, head);
+    assert_true(f->recording.count.lines_lost > lost + 20);
     land(f);
 }
 
