@@ -192,7 +192,7 @@ const struct config_row config_table[] = {
         "made if the folder above it is there."),
     OPTION(
         CONFIG_NUMBER, record_size_mib, 64, 16000, NULL, "record.size", "64..16000", "4096",
-        "MiB that recordings may take; the oldest go first. 100 to 150 MiB hold an hour of a busy "
+        "MiB that recordings may take; the oldest go first. 70 to 140 MiB hold an hour of a busy "
         "bus. 64 MiB of the file system stay free in any case."),
     OPTION(CONFIG_NUMBER, priority, 0, 90, NULL, "realtime.priority", "0..90", "40",
            "SCHED_FIFO priority of the loop; 0: an ordinary process."),

@@ -50,7 +50,7 @@ void recording_open(struct recording *r, const char *folder, const struct record
     r->ring.size = limits->ring_bytes;
     r->is_on = cause == 0 && r->ring.bytes != NULL;
     if (!r->is_on) {
-        r->trouble = "no recording: the folder";
+        r->trouble = "not recorded: the folder";
         report(REPORT_ERROR,
                "recording: %s: %s; the flight is not recorded. Make the folder for user "
                "landmass-panel, or set record = none",
@@ -88,7 +88,7 @@ void recording_start(struct recording *r, const char *restart)
     }
     const int cause = recording_files_start(&r->files);
     if (cause != 0) {
-        give_up(r, "no recording: the folder");
+        give_up(r, "not recorded: the folder");
         report(REPORT_ERROR, "recording: %s: %s; the flight is not recorded", r->files.folder,
                strerror(cause));
     }
