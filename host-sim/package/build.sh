@@ -34,7 +34,8 @@ for tool in $tools; do
     [ "$tool" = db ] || ln -s landmass-db "$completions/landmass-$tool"
 done
 mkdir -p "$root/usr/share/landmass"
-install -m 644 "$top"/host-sim/programs/db/classes/* "$top"/host-sim/programs/radar/tables/* "$root/usr/share/landmass"
+install -m 644 "$top"/host-sim/programs/db/classes/* "$top"/host-sim/programs/radar/tables/* \
+    "$top"/host-sim/nav/share/* "$root/usr/share/landmass"
 mkdir -p "$doc/docs"
 install -m 644 "$top"/docs/*.md "$doc/docs"
 gzip -9nc "$top/CHANGELOG.md" >"$doc/CHANGELOG.md.gz"

@@ -117,9 +117,11 @@ $(eval $(call unit_script,host-sim/package/test_package.sh))
 $(eval $(call unit_script,host-sim/programs/bus/test_forms.py))
 $(eval $(call unit_script,host-sim/programs/dis/test_dis.py))
 $(eval $(call unit_script,host-sim/programs/json/test_json.py))
+$(eval $(call unit_script,host-sim/programs/nav/test_nav_live.py))
 $(eval $(call unit_script,host-sim/programs/progress/test_progress.py))
 $(UNIT)/bsp/panel-linux/test_package: $(PANEL) $(wildcard bsp/panel-linux/debian/*)
 $(UNIT)/host-sim/package/test_package: $(PROGRAMS) $(wildcard host-sim/package/*)
 $(UNIT)/host-sim/programs/dis/test_dis: | $(O)/bin/landmass-dis
+$(UNIT)/host-sim/programs/nav/test_nav_live: | $(O)/bin/landmass-nav
 $(UNIT)/host-sim/programs/json/test_json $(UNIT)/host-sim/programs/progress/test_progress: | $(HOST_TOOLS)
 $(UNIT)/host-sim/programs/bus/test_forms: | $(O)/bin/landmass-bus $(GEN)/bin/bus_table

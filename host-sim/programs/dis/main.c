@@ -4,9 +4,9 @@
 #include "hs/input_file.h"
 #include "hs/progress.h"
 #include "hs/report.h"
+#include "hs/udp.h"
 #include "image/reader.h"
 #include "output.h"
-#include "receive.h"
 
 #include <errno.h>
 #include <signal.h>
@@ -163,8 +163,8 @@ static int run_files(struct run *r)
 /* UTC that is never set: it follows the monotonic clock from here on. */
 static int run_port(struct run *r)
 {
-    struct receiver receiver;
-    if (receiver_open(&receiver, r->command.listen_port, r->command.bind, r->command.group) != 0) {
+    struct hs_udp receiver;
+    if (hs_udp_open(&receiver, r->command.listen_port, r->command.bind, r->command.group) != 0) {
         return -1;
     }
     const int64_t ahead_us = clock_us(CLOCK_REALTIME) - clock_us(CLOCK_MONOTONIC);
@@ -173,8 +173,8 @@ static int run_port(struct run *r)
     while (status >= 0 && !is_over(r, clock_us(CLOCK_MONOTONIC) + ahead_us)) {
         size_t length;
         for (int i = 0; i < BATCH; i++) {
-            status = receiver_next(&receiver, i == 0 ? STEP_US / 1000 : 0, r->bytes,
-                                   sizeof r->bytes, &length);
+            status = hs_udp_next(&receiver, i == 0 ? STEP_US / 1000 : 0, r->bytes, sizeof r->bytes,
+                                 &length, NULL);
             if (status != 1) {
                 break;
             }
@@ -183,7 +183,7 @@ static int run_port(struct run *r)
         step(r, clock_us(CLOCK_MONOTONIC) + ahead_us);
     }
     r->lost = receiver.lost;
-    receiver_close(&receiver);
+    hs_udp_close(&receiver);
     return status < 0 ? -1 : 0;
 }
 

@@ -4,6 +4,7 @@
 #include "hs/report.h"
 #include "nav/route.h"
 #include "options.h"
+#include "simulator.h"
 
 #include <errno.h>
 #include <math.h>
@@ -211,7 +212,9 @@ int main(int argc, char **argv)
     int exit_code;
     struct nav_track track = {0};
     if (nav_options_read(&c, argc, argv, &exit_code)) {
-        exit_code = run(&c, &track) == 0 ? HS_EXIT_OK : HS_EXIT_FAILED;
+        const bool is_live = c.flightgear_port > 0 || c.xplane_port > 0;
+        exit_code =
+            (is_live ? nav_fly_simulator(&c) : run(&c, &track)) == 0 ? HS_EXIT_OK : HS_EXIT_FAILED;
     }
     nav_track_free(&track);
     return hs_report_end(exit_code);

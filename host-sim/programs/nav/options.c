@@ -5,6 +5,7 @@
 #include "hs/options.h"
 #include "nav/parse.h"
 
+#include <arpa/inet.h>
 #include <math.h>
 #include <string.h>
 
@@ -87,11 +88,47 @@ static const char *take_malfunction(void *context, const char *text)
     return nav_exercise_add_malfunction(&c->send.exercise, text);
 }
 
+static const char *take_address(const char **to, const char *text)
+{
+    struct in_addr address;
+    if (inet_pton(AF_INET, text, &address) != 1) {
+        return "needs an IPv4 address such as 192.168.1.5";
+    }
+    *to = text;
+    return NULL;
+}
+
+static const char *take_bind(void *context, const char *text)
+{
+    return take_address(&((struct command *)context)->bind, text);
+}
+
+static const char *take_from(void *context, const char *text)
+{
+    return take_address(&((struct command *)context)->from, text);
+}
+
+static const char *take_ask(void *context, const char *text)
+{
+    return take_address(&((struct command *)context)->ask, text);
+}
+
+static bool is_interface(const char *text)
+{
+    const size_t length = strlen(text);
+    return length >= 1 && length <= 15 && !strpbrk(text, " \t\n/");
+}
+
+static const char *take_can(void *context, const char *text)
+{
+    ((struct command *)context)->can = text;
+    return is_interface(text) ? NULL : "needs a name of 1 to 15 characters without blanks";
+}
+
 static const char *take_interface(void *context, const char *text)
 {
     struct command *c = context;
-    const size_t length = strlen(text);
-    if (length < 1 || length > 15 || strpbrk(text, " \t\n/")) {
+    if (!is_interface(text)) {
         return "needs a name of 1 to 15 characters without blanks";
     }
     c->send.interface = text;
@@ -108,7 +145,9 @@ static const char *take_begin(void *context, const char *text)
 static const struct hs_usage usage = {
     "", "turn a flight into traffic of the avionics bus",
     "Write a log of CANaerospace 1.7 frames, as candump -L writes it. The flight is a TRACK, a "
-    "--circle or a --straight line: exactly one of them.\n"
+    "--circle, a --straight line, or what a simulator flies (--flightgear, --xplane): exactly one "
+    "of "
+    "them.\n"
     "\n"
     "Between fixes the position follows the geodesic. What the track does not have is derived: "
     "bank from turn rate and speed, pitch from the angle of climb, heading = track."};
@@ -119,7 +158,7 @@ static const char heights_help[] =
     "has a GNSS altitude. KML: above mean sea level where altitudeMode is absolute; others are "
     "above "
     "the ground and are left out, unless --datum says what they are. CSV: the column says it. "
-    "--circle and --straight: above the ellipsoid.\n";
+    "--circle and --straight: above the ellipsoid. Simulators: above mean sea level.\n";
 
 static const char columns_help[] =
     "They are named in the first line, in any order and case: timestamp or time (ISO 8601, or "
@@ -143,7 +182,8 @@ static bool read_table(struct command *c, struct raw *raw, int argc, char **argv
 {
     struct hs_taker circle = {take_circle, c}, straight = {take_straight, c},
                     interface = {take_interface, c}, begin = {take_begin, c}, rain = {take_rain, c},
-                    jammer = {take_jammer, c}, live = {take_live, c},
+                    jammer = {take_jammer, c}, bind = {take_bind, c}, can = {take_can, c},
+                    from = {take_from, c}, ask = {take_ask, c}, live = {take_live, c},
                     exercise_rate = {take_exercise_rate, c}, malfunction = {take_malfunction, c};
     const struct hs_option options[] = {
         {"TRACK", HS_INPUT_ARGUMENT, &c->track_path, 0, 0, NULL,
@@ -164,6 +204,28 @@ static bool read_table(struct command *c, struct raw *raw, int argc, char **argv
          false},
         {"straight", HS_TAKER, &straight, 0, 0, "LAT,LON,HEADING_DEG,HEIGHT_M,SPEED_MS",
          "fly the geodesic that leaves LAT,LON in the direction HEADING_DEG", false},
+        {"A simulator", HS_HEADING, NULL, 0, 0, NULL, "", false},
+        {"flightgear", HS_INTEGER, &c->flightgear_port, 1, 65535, "PORT",
+         "take what FlightGear flies from this port of UDP, in real time, until a signal or "
+         "--seconds; "
+         "docs/nav.md says how to start it",
+         false},
+        {"xplane", HS_INTEGER, &c->xplane_port, 1, 65535, "PORT",
+         "likewise X-Plane: its data output with the rows 17, 20 and 21, or what --ask asks for",
+         false},
+        {"ask", HS_TAKER, &ask, 0, 0, "ADDRESS",
+         "ask the X-Plane at this address, port 49000, for its position instead, in full precision",
+         false},
+        {"bind", HS_TAKER, &bind, 0, 0, "ADDRESS",
+         "listen at this address of the machine; 0.0.0.0: at all. Left out: 127.0.0.1, or 0.0.0.0 "
+         "with "
+         "--ask",
+         false},
+        {"from", HS_TAKER, &from, 0, 0, "ADDRESS",
+         "hear this address alone; left out: the first that is heard, until it was silent for 3 s",
+         false},
+        {"can", HS_TAKER, &can, 0, 0, "NAME", "send to an interface of SocketCAN instead of a log",
+         false},
         {"What is sent", HS_HEADING, NULL, 0, 0, NULL, "", false},
         {"out", HS_OUTPUT, &c->out_path, 0, 0, "FILE",
          "where the log goes; left out: standard output", false},
@@ -177,7 +239,9 @@ static bool read_table(struct command *c, struct raw *raw, int argc, char **argv
          false},
         {"start", HS_REAL, &c->start_s, 0, 1e9, "S", "begin S seconds after the first fix", false},
         {"seconds", HS_REAL, &raw->seconds, 0.0125, 1e9, "S",
-         "send S seconds; left out: the whole track, or 60 s of a --circle or --straight line",
+         "send S seconds; left out: the whole track, 60 s of a --circle or --straight line, or "
+         "what the "
+         "simulator flies without end",
          false},
         {"begin", HS_TAKER, &begin, 0, 0, "TIME",
          "move the flight so that its first fix is at TIME (ISO 8601, or seconds since 1970); "
@@ -242,12 +306,22 @@ static bool read_table(struct command *c, struct raw *raw, int argc, char **argv
          "send fixes that repeat the position of the one before although the aircraft moves; "
          "otherwise they are left out and counted",
          false},
-        HS_CLASHES_ROW("circle", "TRACK|straight"),
-        HS_CLASHES_ROW("straight", "TRACK"),
+        HS_CLASHES_ROW("circle", "TRACK|straight|flightgear|xplane"),
+        HS_CLASHES_ROW("straight", "TRACK|flightgear|xplane"),
+        HS_CLASHES_ROW("flightgear", "TRACK|xplane"),
+        HS_CLASHES_ROW("xplane", "TRACK"),
+        HS_NEEDS_ROW("ask", "xplane"),
+        HS_NEEDS_ROW("bind", "flightgear|xplane"),
+        HS_NEEDS_ROW("from", "flightgear|xplane"),
+        HS_NEEDS_ROW("can", "flightgear|xplane"),
+        HS_CLASHES_ROW("can", "out"),
+        HS_CLASHES_ROW("start", "flightgear|xplane"),
+        HS_CLASHES_ROW("begin", "flightgear|xplane"),
+        HS_CLASHES_ROW("exercise-rate", "flightgear|xplane"),
         HS_NEEDS_ROW("format", "TRACK"),
         HS_NEEDS_ROW("strict", "TRACK"),
         HS_NEEDS_ROW("speed", "TRACK"),
-        HS_NEEDS_ROW("datum", "TRACK"),
+        HS_NEEDS_ROW("datum", "TRACK|flightgear|xplane"),
         HS_NEEDS_ROW("qnh", "TRACK"),
         HS_NEEDS_ROW("max-gap", "TRACK"),
         HS_NEEDS_ROW("max-speed", "TRACK"),
@@ -270,9 +344,13 @@ bool nav_options_read(struct command *c, int argc, char **argv, int *exit_code)
     if (!read_table(c, &raw, argc, argv, exit_code)) {
         return false;
     }
-    if ((c->track_path != NULL) + c->has_circle + c->has_straight != 1) {
-        *exit_code = hs_options_wrong(
-            &usage, "TRACK", "or --circle or --straight must be given, and only one of them");
+    if ((c->track_path != NULL) + c->has_circle + c->has_straight + (c->flightgear_port > 0) +
+            (c->xplane_port > 0) !=
+        1) {
+        *exit_code =
+            hs_options_wrong(&usage, "TRACK",
+                             "or --circle, --straight, --flightgear or --xplane must be given, "
+                             "and only one of them");
         return false;
     }
     if (isnan(raw.clock_s) && (raw.seed >= 0 || c->send.exercise.rate_count > 0)) {

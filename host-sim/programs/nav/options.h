@@ -23,6 +23,9 @@ struct command {
     enum nav_datum datum;
     bool keeps_repeats;
     int64_t begin_us;
+    /* Of a simulator. */
+    long flightgear_port, xplane_port; /* 0: not given */
+    const char *bind, *can, *from, *ask;
 };
 
 /* Returns true to go on. Otherwise *exit_code is an hs_exit: help was printed, or the mistake

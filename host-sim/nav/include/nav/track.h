@@ -85,6 +85,8 @@ struct nav_state {
     double speed_ms, track_deg, climb_ms; /* track 0..360 */
     double east_ms, north_ms;
     double heading_deg, pitch_deg, roll_deg; /* heading -180..180 */
+    double magnetic_deg, variation_deg; /* heading from magnetic north; true less magnetic. NAN:
+                                           not known, as in every track */
     double roll_rate, pitch_rate, yaw_rate;
 };
 

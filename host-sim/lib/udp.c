@@ -1,4 +1,4 @@
-#include "receive.h"
+#include "hs/udp.h"
 
 #include "hs/error.h"
 
@@ -19,7 +19,7 @@ static int join(int socket, const char *group)
     return setsockopt(socket, IPPROTO_IP, IP_ADD_MEMBERSHIP, &request, sizeof request);
 }
 
-int receiver_open(struct receiver *r, long port, const char *bind_to, const char *group)
+int hs_udp_open(struct hs_udp *u, long port, const char *bind_to, const char *group)
 {
     const int on = 1, room = ROOM_BYTES;
     const char *address = bind_to != NULL ? bind_to : group != NULL ? "0.0.0.0" : "127.0.0.1";
@@ -27,18 +27,18 @@ int receiver_open(struct receiver *r, long port, const char *bind_to, const char
     char place[80];
     snprintf(place, sizeof place, "UDP port %ld at %s", port, address);
     (void)inet_pton(AF_INET, address, &here.sin_addr);
-    *r = (struct receiver){.socket = socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC, 0)};
-    if (r->socket < 0) {
+    *u = (struct hs_udp){.socket = socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC, 0)};
+    if (u->socket < 0) {
         return hs_error(place, NULL, "cannot be opened: %s", strerror(errno));
     }
     /* Others of this machine may listen to the same exercise. What fails here is no loss. */
-    (void)setsockopt(r->socket, SOL_SOCKET, SO_REUSEADDR, &on, sizeof on);
-    (void)setsockopt(r->socket, SOL_SOCKET, SO_RCVBUF, &room, sizeof room);
-    (void)setsockopt(r->socket, SOL_SOCKET, SO_RXQ_OVFL, &on, sizeof on);
-    if (bind(r->socket, (const struct sockaddr *)&here, sizeof here) != 0 ||
-        (group != NULL && join(r->socket, group) != 0)) {
+    (void)setsockopt(u->socket, SOL_SOCKET, SO_REUSEADDR, &on, sizeof on);
+    (void)setsockopt(u->socket, SOL_SOCKET, SO_RCVBUF, &room, sizeof room);
+    (void)setsockopt(u->socket, SOL_SOCKET, SO_RXQ_OVFL, &on, sizeof on);
+    if (bind(u->socket, (const struct sockaddr *)&here, sizeof here) != 0 ||
+        (group != NULL && join(u->socket, group) != 0)) {
         const int cause = errno;
-        receiver_close(r);
+        hs_udp_close(u);
         return hs_error(place, "choose another port, or an address of this machine",
                         "cannot be listened to: %s", strerror(cause));
     }
@@ -46,18 +46,19 @@ int receiver_open(struct receiver *r, long port, const char *bind_to, const char
 }
 
 /* The kernel counts what it lost in a message beside the datagram. */
-static void note_lost(struct receiver *r, struct msghdr *message)
+static void note_lost(struct hs_udp *u, struct msghdr *message)
 {
     for (struct cmsghdr *c = CMSG_FIRSTHDR(message); c != NULL; c = CMSG_NXTHDR(message, c)) {
         if (c->cmsg_level == SOL_SOCKET && c->cmsg_type == SO_RXQ_OVFL) {
-            memcpy(&r->lost, CMSG_DATA(c), sizeof r->lost);
+            memcpy(&u->lost, CMSG_DATA(c), sizeof u->lost);
         }
     }
 }
 
-int receiver_next(struct receiver *r, int wait_ms, uint8_t *bytes, size_t room, size_t *length)
+int hs_udp_next(struct hs_udp *u, int wait_ms, uint8_t *bytes, size_t room, size_t *length,
+                struct sockaddr_in *from)
 {
-    struct pollfd waiting = {.fd = r->socket, .events = POLLIN};
+    struct pollfd waiting = {.fd = u->socket, .events = POLLIN};
     if (poll(&waiting, 1, wait_ms) <= 0) {
         return 0; /* none, or a signal */
     }
@@ -66,23 +67,33 @@ int receiver_next(struct receiver *r, int wait_ms, uint8_t *bytes, size_t room, 
         struct cmsghdr aligned;
     } beside;
     struct iovec part = {bytes, room};
-    struct msghdr message = {
-        .msg_iov = &part, .msg_iovlen = 1, .msg_control = &beside, .msg_controllen = sizeof beside};
-    const ssize_t got = recvmsg(r->socket, &message, MSG_DONTWAIT);
+    struct msghdr message = {.msg_name = from,
+                             .msg_namelen = from ? sizeof *from : 0,
+                             .msg_iov = &part,
+                             .msg_iovlen = 1,
+                             .msg_control = &beside,
+                             .msg_controllen = sizeof beside};
+    const ssize_t got = recvmsg(u->socket, &message, MSG_DONTWAIT);
     if (got < 0) {
         return errno == EAGAIN || errno == EINTR || errno == ECONNREFUSED
                    ? 0
                    : hs_error("UDP", NULL, "cannot be received from: %s", strerror(errno));
     }
-    note_lost(r, &message);
+    note_lost(u, &message);
     *length = (size_t)got;
     return 1;
 }
 
-void receiver_close(struct receiver *r)
+void hs_udp_send(const struct hs_udp *u, const struct sockaddr_in *to, const void *bytes,
+                 size_t length)
 {
-    if (r->socket >= 0) {
-        close(r->socket);
-        r->socket = -1;
+    (void)sendto(u->socket, bytes, length, MSG_DONTWAIT, (const struct sockaddr *)to, sizeof *to);
+}
+
+void hs_udp_close(struct hs_udp *u)
+{
+    if (u->socket >= 0) {
+        close(u->socket);
+        u->socket = -1;
     }
 }
