@@ -2,6 +2,7 @@
 
 #include "dis/clock.h"
 #include "entities.h"
+#include "feed.h"
 #include "hs/error.h"
 
 #include <math.h>
@@ -48,6 +49,18 @@ struct dis_gateway {
     int strange_count;
     struct ranked ranked[DIS_ENTITIES_MAX]; /* while choosing */
 };
+
+struct dis_settings dis_settings_usual(void)
+{
+    return (struct dis_settings){.timeout_s = 12,
+                                 .heartbeat_s = 1,
+                                 .threshold_m = 2,
+                                 .threshold_deg = 3,
+                                 .bits_per_s = 1e6,
+                                 .load = 0.4,
+                                 .node = 60,
+                                 .last_number = 255};
+}
 
 struct dis_gateway *dis_gateway_new(const struct dis_settings *settings, struct dis_kinds *kinds,
                                     const struct dis_sink *sink)
@@ -207,8 +220,9 @@ static int find_or_add(struct dis_gateway *g, const struct dis_entity_state *s, 
 
 static void judge(struct dis_gateway *g, int at, int64_t now_us);
 
-static void take_state(struct dis_gateway *g, const struct dis_pdu *pdu,
-                       const struct dis_entity_state *s, int64_t now_us)
+/* `of_us` is the instant that the state is of. */
+static void take_state(struct dis_gateway *g, const struct dis_entity_state *s, int64_t of_us,
+                       int64_t now_us)
 {
     if (g->set.has_ownship && dis_id_is(&s->id, &g->set.ownship)) {
         g->count.ownship++;
@@ -233,7 +247,7 @@ static void take_state(struct dis_gateway *g, const struct dis_pdu *pdu,
         e->type = s->type;
         look_up_kind(g, e);
     }
-    take_motion(e, s, instant_us(pdu, now_us));
+    take_motion(e, s, of_us);
     e->heard_us = now_us;
     judge(g, at, now_us);
 }
@@ -278,7 +292,7 @@ static enum dis_fault take_pdu(struct dis_gateway *g, const struct dis_pdu *pdu,
             g->count.other_site++;
             return DIS_FAULT_NONE;
         }
-        take_state(g, pdu, &state, now_us);
+        take_state(g, &state, instant_us(pdu, now_us), now_us);
         return DIS_FAULT_NONE;
     case DIS_START_RESUME:
     case DIS_STOP_FREEZE:
@@ -318,6 +332,26 @@ void dis_gateway_take(struct dis_gateway *g, const uint8_t *bytes, size_t length
             g->count.fault[fault] += fault != DIS_FAULT_NONE;
         }
     }
+}
+
+/* ---- what other readers bring ---- */
+
+void dis_gateway_take_entity(struct dis_gateway *g, const struct dis_entity_state *s,
+                             int64_t now_us)
+{
+    take_state(g, s, now_us, now_us);
+}
+
+void dis_gateway_hear_all(struct dis_gateway *g, int64_t now_us)
+{
+    for (int i = 0; i < g->entities.count; i++) {
+        g->entities.one[i].heard_us = now_us;
+    }
+}
+
+struct dis_counts *dis_gateway_tally(struct dis_gateway *g)
+{
+    return &g->count;
 }
 
 /* ---- who gets a number ---- */

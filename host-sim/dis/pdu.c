@@ -234,7 +234,7 @@ double dis_timestamp_s(uint32_t timestamp, bool *is_absolute)
 static const char *const fault_words[DIS_FAULT_COUNT][2] = {
     [DIS_FAULT_NONE] = {"none", "none"},
     [DIS_FAULT_HEADER] = {"no whole header", "header"},
-    [DIS_FAULT_PROTOCOL] = {"a version that DIS does not have", "protocol"},
+    [DIS_FAULT_PROTOCOL] = {"of another protocol or version", "protocol"},
     [DIS_FAULT_TRUNCATED] = {"longer than what is left of its datagram", "truncated"},
     [DIS_FAULT_SHORT] = {"shorter than its fields", "short"},
     [DIS_FAULT_NUMBER] = {"a number that is not finite", "number"},

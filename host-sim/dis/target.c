@@ -1,5 +1,7 @@
 #include "dis/target.h"
 
+#include "feed.h"
+
 #include <math.h>
 #include <string.h>
 
@@ -14,7 +16,7 @@ enum { TYPE_FLOAT = 2, TYPE_LONG = 3, TYPE_UCHAR = 10, TYPE_SHORT2 = 12, TYPE_UC
 
 /* ---- from an entity ---- */
 
-static double sea_level_m(const struct dis_sea_level *sea, const struct dis_place *place)
+double dis_sea_level_m(const struct dis_sea_level *sea, const struct dis_place *place)
 {
     if (sea->grid == NULL) {
         return sea->height_m;
@@ -94,7 +96,7 @@ enum dis_unfit dis_target_of(const struct dis_motion *motion, const struct dis_k
     memset(t, 0, sizeof *t);
     t->latitude_1e7 = (int32_t)lround(place.latitude_deg * 1e7);
     t->longitude_1e7 = (int32_t)lround(place.longitude_deg * 1e7);
-    t->height_m = kind->is_on_ground ? 0 : (float)(place.height_m - sea_level_m(sea, &place));
+    t->height_m = kind->is_on_ground ? 0 : (float)(place.height_m - dis_sea_level_m(sea, &place));
     t->kind = kind->kind;
     t->signature = kind->signature;
     t->rcs_dbsm = isnan(kind->rcs_dbsm) ? 0 : (float)kind->rcs_dbsm;

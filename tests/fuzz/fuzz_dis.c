@@ -82,15 +82,9 @@ static bool check_frame(void *context, const struct lm_can_frame *f, int64_t tim
 static struct dis_gateway *make_gateway(int64_t *last_us)
 {
     static struct dis_kinds kinds;
-    const struct dis_settings settings = {.timeout_s = 12,
-                                          .heartbeat_s = 1,
-                                          .threshold_m = 2,
-                                          .threshold_deg = 3,
-                                          .bits_per_s = 1e6,
-                                          .load = 0.4,
-                                          .node = 60,
-                                          .tells_clock = true,
-                                          .last_number = 3};
+    struct dis_settings settings = dis_settings_usual();
+    settings.tells_clock = true;
+    settings.last_number = 3;
     const struct dis_sink sink = {check_frame, last_us};
     FUZZ_ASSERT(dis_kinds_read_builtin(&kinds) == 0);
     struct dis_gateway *g = dis_gateway_new(&settings, &kinds, &sink);

@@ -1,5 +1,6 @@
 /* landmass-dis: the entities of a DIS exercise as live targets of the display. */
 #include "dis/capture.h"
+#include "dis/cigi.h"
 #include "hs/error.h"
 #include "hs/input_file.h"
 #include "hs/progress.h"
@@ -22,6 +23,7 @@ struct run {
     struct image image;
     struct output output;
     struct dis_gateway *gateway;
+    struct dis_cigi *cigi;    /* NULL: the datagrams are of DIS */
     int64_t first_us, now_us; /* on the clock of the record, or UTC */
     int64_t paced_from_us;    /* CLOCK_MONOTONIC at first_us */
     bool has_begun, has_image;
@@ -60,6 +62,15 @@ static void begin(struct run *r, int64_t now_us)
         r->has_begun = true;
         r->first_us = r->now_us = now_us;
         r->paced_from_us = clock_us(CLOCK_MONOTONIC);
+    }
+}
+
+static void take(struct run *r, const uint8_t *bytes, size_t length, int64_t now_us)
+{
+    if (r->cigi != NULL) {
+        dis_cigi_take(r->cigi, bytes, length, now_us);
+    } else {
+        dis_gateway_take(r->gateway, bytes, length, now_us);
     }
 }
 
@@ -107,7 +118,7 @@ static void take_recorded(struct run *r, const uint8_t *bytes, size_t length, in
     const int64_t now_us = time_us > r->now_us ? time_us : r->now_us;
     if (!is_over(r, now_us)) {
         wait_until(r, now_us);
-        dis_gateway_take(r->gateway, bytes, length, now_us);
+        take(r, bytes, length, now_us);
         step(r, now_us);
     }
 }
@@ -178,7 +189,7 @@ static int run_port(struct run *r)
             if (status != 1) {
                 break;
             }
-            dis_gateway_take(r->gateway, r->bytes, length, clock_us(CLOCK_MONOTONIC) + ahead_us);
+            take(r, r->bytes, length, clock_us(CLOCK_MONOTONIC) + ahead_us);
         }
         step(r, clock_us(CLOCK_MONOTONIC) + ahead_us);
     }
@@ -263,6 +274,7 @@ static void report_input(const struct run *r, const struct dis_counts *n)
     hs_report_count("other_site", n->other_site);
     hs_report_count("ownship", n->ownship);
     hs_report_count("update_of_unknown", n->update_of_unknown);
+    hs_report_count("attached", n->attached);
     hs_report_count("without_room", n->without_room);
     hs_report_count("too_fast", n->too_fast);
     hs_report_count("too_high", n->too_high);
@@ -316,10 +328,11 @@ static void print_input(const struct run *r, const struct dis_counts *n)
     }
     fprintf(stderr,
             "\nleft out: %llu of versions 1 to 5, %llu of another exercise, %llu of another site "
-            "or application, %llu of the ownship, %llu updates of the unknown, %llu too fast, %llu "
-            "too high\n",
+            "or application, %llu of the ownship, %llu updates of the unknown, %llu attached to "
+            "others, %llu too fast, %llu too high\n",
             (count)n->other_versions, (count)n->other_exercise, (count)n->other_site,
-            (count)n->ownship, (count)n->update_of_unknown, (count)n->too_fast, (count)n->too_high);
+            (count)n->ownship, (count)n->update_of_unknown, (count)n->attached, (count)n->too_fast,
+            (count)n->too_high);
     const uint64_t around = r->capture.other_traffic + r->other_port;
     if (r->lost + around + r->capture.fragments + r->capture.cut_short > 0) {
         fprintf(stderr,
@@ -394,7 +407,11 @@ static int run(struct run *r)
     }
     const struct dis_sink sink = {output_send, &r->output};
     r->gateway = dis_gateway_new(&r->command.settings, &r->kinds, &sink);
-    int status = r->gateway == NULL ? -1 : run_source(r);
+    if (r->gateway != NULL && r->command.is_cigi) {
+        r->cigi = dis_cigi_new(r->gateway, &r->command.settings.sea);
+    }
+    const bool is_ready = r->gateway != NULL && (r->cigi != NULL || !r->command.is_cigi);
+    int status = is_ready ? run_source(r) : -1;
     if (r->gateway != NULL) {
         report_entities(r);
         dis_gateway_end(r->gateway, r->now_us);
@@ -432,6 +449,7 @@ int main(int argc, char **argv)
     if (r.has_image) {
         image_close(&r.image);
     }
+    dis_cigi_free(r.cigi);
     dis_gateway_free(r.gateway);
     dis_options_free(&r.command);
     return hs_report_end(exit_code);

@@ -123,6 +123,11 @@ static bool read_table(struct command *c, struct raw *raw, int argc, char **argv
          "a capture in pcap or pcapng, as tcpdump -w writes it; its own times are used", false},
         {"pdu", HS_INPUTS, &c->pdu_paths, 0, 0, "FILE[,FILE...]",
          "the bytes of a datagram each, taken one second after the other from time 0", false},
+        {"cigi", HS_FLAG, &c->is_cigi, 0, 0, NULL,
+         "the datagrams are those of a host of CIGI 3 to its image generator, not of DIS: entity 0 "
+         "is the ownship, others are 0.DOMAIN.TYPE of the table of kinds, DOMAIN 1 for those "
+         "clamped to the ground and 2 else",
+         false},
         {"bind", HS_TAKER, &raw->bind, 0, 0, "ADDRESS",
          "listen at this address of the machine; 0.0.0.0: at all, broadcasts too. Left out: "
          "127.0.0.1, the machine itself, or 0.0.0.0 with --group",
@@ -178,6 +183,8 @@ static bool read_table(struct command *c, struct raw *raw, int argc, char **argv
         {"geoid", HS_REAL, &raw->geoid_m, -120, 120, "M",
          "that height, where there is no image; left out: 0", false},
         {"quiet", HS_FLAG, &c->is_quiet, 0, 0, NULL, "no summary on standard error", false},
+        HS_NEEDS_ROW("cigi", "kinds"),
+        HS_CLASHES_ROW("cigi", "exercise|site|application|ownship"),
     };
     return hs_options_read(&usage, options, sizeof options / sizeof options[0], argc, argv,
                            exit_code);
@@ -216,12 +223,7 @@ static bool fits(const struct command *c, const struct raw *raw, int *exit_code)
 
 bool dis_options_read(struct command *c, int argc, char **argv, int *exit_code)
 {
-    *c = (struct command){.interface = "can0",
-                          .settings = {.timeout_s = 12,
-                                       .heartbeat_s = 1,
-                                       .threshold_m = 2,
-                                       .threshold_deg = 3,
-                                       .last_number = 255}};
+    *c = (struct command){.interface = "can0", .settings = dis_settings_usual()};
     struct dis_settings *s = &c->settings;
     struct raw raw = {.exercises = {take_filter, &s->exercises},
                       .sites = {take_filter, &s->sites},
@@ -233,16 +235,17 @@ bool dis_options_read(struct command *c, int argc, char **argv, int *exit_code)
                       .can = {take_interface, &c->can},
                       .bind = {take_address, &c->bind},
                       .group = {take_group, &c->group},
-                      .load_percent = 40,
-                      .bitrate_kbit_s = 1000,
+                      .load_percent = s->load * 100,
+                      .bitrate_kbit_s = s->bits_per_s / 1000,
                       .geoid_m = (double)NAN,
-                      .node = 60};
+                      .node = s->node};
     if (!read_table(c, &raw, argc, argv, exit_code) || !fits(c, &raw, exit_code)) {
         return false;
     }
     s->bits_per_s = raw.bitrate_kbit_s * 1000;
     s->load = raw.load_percent / 100;
     s->node = (uint8_t)raw.node;
+    s->has_ownship |= c->is_cigi;
     s->sea.height_m = isnan(raw.geoid_m) ? 0 : raw.geoid_m;
     return true;
 }

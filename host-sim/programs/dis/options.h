@@ -13,6 +13,7 @@ struct command {
     long listen_port, port; /* 0: not given */
     double seconds;         /* 0: no end */
     bool is_quiet, prints_kinds;
+    bool is_cigi; /* the datagrams are of CIGI, not of DIS */
     struct dis_settings settings;
 };
 

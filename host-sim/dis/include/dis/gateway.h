@@ -37,11 +37,15 @@ struct dis_settings {
     uint8_t first_number, last_number;
 };
 
+/* The settings of landmass-dis without options: no filter, all 256 numbers, 40 % of 1 Mbit/s. */
+struct dis_settings dis_settings_usual(void);
+
 /* What was met and what became of it. */
 struct dis_counts {
     uint64_t datagrams, bytes, pdus, states, updates, commands, other_pdus, other_versions;
     uint64_t fault[DIS_FAULT_COUNT];
     uint64_t other_exercise, other_site, ownship, update_of_unknown;
+    uint64_t attached; /* of CIGI: an entity that another one carries */
     uint64_t entities, deactivated, timed_out, without_room; /* entities that came and went */
     uint64_t skipped, without_rule;                          /* entities that are no targets */
     uint64_t too_fast, too_high;                             /* states that the bus cannot carry */

@@ -34,14 +34,7 @@ static struct dis_kinds kinds;
 
 static struct dis_gateway *connect(void)
 {
-    const struct dis_settings settings = {.timeout_s = 12,
-                                          .heartbeat_s = 1,
-                                          .threshold_m = 2,
-                                          .threshold_deg = 3,
-                                          .bits_per_s = 1e6,
-                                          .load = 0.4,
-                                          .node = 60,
-                                          .last_number = 255};
+    const struct dis_settings settings = dis_settings_usual();
     const struct dis_sink sink = {hear, NULL};
     live = (struct lm_live_bus){.next = 0};
     lm_bus_init(&bus, &lm_bus_canas17);

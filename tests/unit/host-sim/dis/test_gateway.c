@@ -28,18 +28,6 @@ static bool note(void *context, const struct lm_can_frame *frame, int64_t time_u
     return true;
 }
 
-static struct dis_settings usual(void)
-{
-    return (struct dis_settings){.timeout_s = 12,
-                                 .heartbeat_s = 1,
-                                 .threshold_m = 2,
-                                 .threshold_deg = 3,
-                                 .bits_per_s = 1e6,
-                                 .load = 0.4,
-                                 .node = 60,
-                                 .last_number = 255};
-}
-
 static void begin(const struct dis_settings *settings)
 {
     const struct dis_sink sink = {note, NULL};
@@ -100,7 +88,7 @@ static const struct dis_counts *counts(void)
 
 GATEWAY_TEST(a_vehicle_is_told_at_once_then_once_a_second_and_removed_when_silent)
 {
-    const struct dis_settings s = usual();
+    const struct dis_settings s = dis_settings_usual();
     const struct made_entity e = made_vehicle(1);
     begin(&s);
     give_vehicle(&e);
@@ -118,7 +106,7 @@ GATEWAY_TEST(a_vehicle_is_told_at_once_then_once_a_second_and_removed_when_silen
 
 GATEWAY_TEST(frames_of_a_set_have_one_code_and_the_next_set_the_next)
 {
-    const struct dis_settings s = usual();
+    const struct dis_settings s = dis_settings_usual();
     const struct made_entity e = made_vehicle(1);
     begin(&s);
     give_vehicle(&e);
@@ -136,7 +124,7 @@ GATEWAY_TEST(frames_of_a_set_have_one_code_and_the_next_set_the_next)
 
 GATEWAY_TEST(a_state_that_the_display_foresaw_sends_nothing_and_a_surprise_is_sent_at_once)
 {
-    const struct dis_settings s = usual();
+    const struct dis_settings s = dis_settings_usual();
     struct made_entity e = made_vehicle(1);
     e.velocity[1] = 10;
     begin(&s);
@@ -153,7 +141,7 @@ GATEWAY_TEST(a_state_that_the_display_foresaw_sends_nothing_and_a_surprise_is_se
 
 GATEWAY_TEST(a_vehicle_that_turns_away_is_a_surprise_too)
 {
-    const struct dis_settings s = usual();
+    const struct dis_settings s = dis_settings_usual();
     struct made_entity e = made_vehicle(1);
     begin(&s);
     give_vehicle(&e);
@@ -164,7 +152,7 @@ GATEWAY_TEST(a_vehicle_that_turns_away_is_a_surprise_too)
 
 GATEWAY_TEST(an_update_moves_what_is_known_and_nothing_else)
 {
-    const struct dis_settings s = usual();
+    const struct dis_settings s = dis_settings_usual();
     struct made_entity e = made_vehicle(1);
     struct made m = {.length = 0};
     begin(&s);
@@ -181,7 +169,7 @@ GATEWAY_TEST(an_update_moves_what_is_known_and_nothing_else)
 
 GATEWAY_TEST(filters_keep_out_other_exercises_sites_and_the_ownship)
 {
-    struct dis_settings s = usual();
+    struct dis_settings s = dis_settings_usual();
     s.exercises = (struct dis_filter){{3, 4}, 2};
     s.sites = (struct dis_filter){{11}, 1};
     s.has_ownship = true;
@@ -205,7 +193,7 @@ GATEWAY_TEST(filters_keep_out_other_exercises_sites_and_the_ownship)
 
 GATEWAY_TEST(a_deactivated_entity_is_removed_at_once)
 {
-    const struct dis_settings s = usual();
+    const struct dis_settings s = dis_settings_usual();
     struct made_entity e = made_vehicle(1);
     begin(&s);
     give_vehicle(&e);
@@ -218,7 +206,7 @@ GATEWAY_TEST(a_deactivated_entity_is_removed_at_once)
 
 GATEWAY_TEST(who_stays_is_still_known_when_others_leave)
 {
-    const struct dis_settings s = usual();
+    const struct dis_settings s = dis_settings_usual();
     struct made_entity e = made_vehicle(1);
     begin(&s);
     for (uint16_t i = 1; i <= 40; i++) {
@@ -241,7 +229,7 @@ GATEWAY_TEST(who_stays_is_still_known_when_others_leave)
 
 GATEWAY_TEST(what_the_table_skips_or_does_not_know_is_counted_once)
 {
-    const struct dis_settings s = usual();
+    const struct dis_settings s = dis_settings_usual();
     struct made_entity e = made_vehicle(1);
     e.domain = 4;
     begin(&s);
@@ -279,7 +267,7 @@ static bool is_told(uint16_t number)
 
 GATEWAY_TEST(of_more_than_256_the_first_are_told_and_the_others_counted)
 {
-    struct dis_settings s = usual();
+    struct dis_settings s = dis_settings_usual();
     s.timeout_s = 60;
     begin(&s);
     for (uint16_t i = 1; i <= 300; i++) {
@@ -298,7 +286,7 @@ GATEWAY_TEST(of_more_than_256_the_first_are_told_and_the_others_counted)
 
 GATEWAY_TEST(with_a_centre_the_nearest_are_told_and_one_that_comes_near_takes_a_place)
 {
-    struct dis_settings s = usual();
+    struct dis_settings s = dis_settings_usual();
     s.last_number = 9;
     s.has_centre = true; /* 0 N 0 E */
     s.timeout_s = 60;
@@ -321,7 +309,7 @@ GATEWAY_TEST(with_a_centre_the_nearest_are_told_and_one_that_comes_near_takes_a_
 
 GATEWAY_TEST(the_share_of_the_bus_is_never_exceeded_and_256_targets_need_less)
 {
-    struct dis_settings s = usual();
+    struct dis_settings s = dis_settings_usual();
     s.timeout_s = 60;
     begin(&s);
     for (uint16_t i = 1; i <= 256; i++) {
@@ -343,7 +331,7 @@ GATEWAY_TEST(the_share_of_the_bus_is_never_exceeded_and_256_targets_need_less)
 
 GATEWAY_TEST(on_a_bus_that_is_too_slow_heartbeats_are_late_and_counted)
 {
-    struct dis_settings s = usual();
+    struct dis_settings s = dis_settings_usual();
     s.bits_per_s = 125e3;
     s.timeout_s = 60;
     begin(&s);
@@ -357,7 +345,7 @@ GATEWAY_TEST(on_a_bus_that_is_too_slow_heartbeats_are_late_and_counted)
 
 GATEWAY_TEST(a_frozen_exercise_stands_and_does_not_age)
 {
-    const struct dis_settings s = usual();
+    const struct dis_settings s = dis_settings_usual();
     struct made_entity e = made_vehicle(1);
     struct made stop = {.length = 0}, start = {.length = 0};
     e.velocity[1] = 100;
@@ -396,7 +384,7 @@ static int32_t told_ms(bool *is_standing)
 
 GATEWAY_TEST(the_exercise_clock_runs_with_the_exercise_and_stands_with_it)
 {
-    struct dis_settings s = usual();
+    struct dis_settings s = dis_settings_usual();
     struct made stop = {.length = 0}, start = {.length = 0};
     bool is_standing;
     s.tells_clock = true;
@@ -418,7 +406,7 @@ GATEWAY_TEST(the_exercise_clock_runs_with_the_exercise_and_stands_with_it)
 
 GATEWAY_TEST(an_absolute_timestamp_that_agrees_with_the_clock_gives_the_instant)
 {
-    const struct dis_settings s = usual();
+    const struct dis_settings s = dis_settings_usual();
     struct made_entity e = made_vehicle(1);
     e.velocity[1] = 100;
     begin(&s); /* 100 s after a full hour */
@@ -433,7 +421,7 @@ GATEWAY_TEST(an_absolute_timestamp_that_agrees_with_the_clock_gives_the_instant)
 
 GATEWAY_TEST(a_flood_of_entities_is_bounded_and_counted)
 {
-    const struct dis_settings s = usual();
+    const struct dis_settings s = dis_settings_usual();
     begin(&s);
     for (uint32_t i = 0; i < DIS_ENTITIES_MAX + 1000; i++) {
         struct made_entity e = made_vehicle((uint16_t)(i % 50000 + 1));
@@ -450,7 +438,7 @@ GATEWAY_TEST(a_flood_of_entities_is_bounded_and_counted)
 
 GATEWAY_TEST(the_end_of_the_run_removes_every_target)
 {
-    const struct dis_settings s = usual();
+    const struct dis_settings s = dis_settings_usual();
     begin(&s);
     for (uint16_t i = 1; i <= 20; i++) {
         give_at(i, 100 * i);
@@ -462,7 +450,7 @@ GATEWAY_TEST(the_end_of_the_run_removes_every_target)
 
 GATEWAY_TEST(a_bundle_with_a_bad_pdu_in_it_loses_that_pdu_alone)
 {
-    const struct dis_settings s = usual();
+    const struct dis_settings s = dis_settings_usual();
     struct made m = {.length = 0};
     struct made_entity e = made_vehicle(1), bad = made_vehicle(2);
     bad.place[0] = (double)NAN;

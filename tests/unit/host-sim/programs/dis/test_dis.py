@@ -265,6 +265,102 @@ def open_dis_sends_and_its_ships_are_where_it_says(work):
     assert {s["kind"] for s in sets} == {13} and all(0 < math.hypot(*s[1813]) * 0.05 < 3.01 for s in sets)
 
 
+# ---- CIGI, from the fields of packet-cigi.c ----
+
+def ig_control(order, ticks=None, minor=3):
+    flags = minor << 4 | (0 if ticks is None else 4) | 1
+    return struct.pack(order + "BBBbBBHIIII", 1, 24, 3, 0, flags, 0, 0x8000, 7, ticks or 0, 3, 0)
+
+
+def entity_control(order, entity, place, kind=1, state=1, clamp=0, attach=0, yaw=0.0, parent=0):
+    return struct.pack(order + "BBHBBBBHHfffddd", 2, 48, entity, clamp << 5 | attach << 2 | state, 0, 255, 0, kind, parent, 1.5, -2.5,
+                       yaw, *place)
+
+
+def rate_control(order, entity, rates, local=0):
+    return struct.pack(order + "BBHBBHffffff", 8, 32, entity, 0, local << 1, 0, *rates, 0, 0, 0)
+
+
+def write_cigi_kinds(work):
+    path = os.path.join(work, "cigi.kinds")
+    with open(path, "w") as file:
+        file.write("0.1.7 kind truck\n0.2.9 kind fighter\n0.1.13 kind ship\n")
+    return path
+
+
+def a_cigi_host_tells_of_entities_where_tshark_sees_them(work):
+    if not shutil.which("tshark"):
+        raise Skip("no tshark here")
+    for order in "<>":
+        path = os.path.join(work, "cigi.pcap")
+        told, messages = {}, []
+        for i in range(1, 41):
+            told[i] = (-60 + 3 * i + 0.123456789, 4.5 * i - 90.5, 100.0 * i)
+            control = entity_control(order, i, told[i], kind=9, yaw=4.0 * i)
+            messages.append((0.02 * i, ig_control(order, 2000 * i) + control + bytes([200, 4, 0, 0])))
+        write_capture(path, messages)
+        peer = subprocess.run(["tshark", "-r", path, "-d", "udp.port==3000,cigi", "-T", "fields", "-E", "separator=|"] + [
+            word for field in ("entity_id", "lat_xoff", "lon_yoff", "alt_zoff", "yaw") for word in ("-e", "cigi.entity_control." + field)],
+            capture_output=True, timeout=60)
+        rows = [row.split("|") for row in peer.stdout.decode().splitlines() if row.count("|") == 4 and row[0] != "|"]
+        assert len(rows) == 40, (peer.stdout[:300], peer.stderr[:300])
+        figures, frames = report("--cigi", "--kinds", write_cigi_kinds(work), "--capture", path, "--geoid", "33")
+        ours = {e["id"]: e for e in figures["entities_at_end"]}
+        assert figures["entity_states"] == 40 and figures["other_pdus"] == 40 and not any(figures["refused"].values()), figures
+        headings = {round(s["latitude"], 5): s[1814][0] * 180 / 32768 % 360 for s in sets_of(frames)}
+        for entity, latitude, longitude, height, yaw in rows:
+            e = ours["0:0:%d" % int(entity)]
+            assert abs(e["latitude_deg"] - float(latitude)) < 1e-6 and abs(e["longitude_deg"] - float(longitude)) < 1e-6, (e, rows)
+            assert abs(e["ellipsoid_height_m"] - 33 - float(height)) < 0.01, e
+            assert abs((headings[round(float(latitude), 5)] - float(yaw) + 180) % 360 - 180) < 0.02, (entity, yaw)
+
+
+def a_cigi_entity_moves_stops_and_goes(work):
+    """A fighter whose velocity follows from its places, a lorry that has a rate, one that is attached, one that goes."""
+    path, kinds, order = os.path.join(work, "cigi.pcap"), write_cigi_kinds(work), "<"
+    messages = []
+    for n in range(181):  # three seconds at 60 Hz
+        t = n / 60
+        packets = [entity_control(order, 0, (46, 11, 3000)),
+                   entity_control(order, 5, (46.2 + 200 * min(t, 2) / 111170, 11, 4000), kind=9),
+                   entity_control(order, 8, (46, 11, 0), kind=9, attach=1, parent=5)]
+        if n == 0:
+            packets += [entity_control(order, 6, (46.1, 11.1, 1), kind=7, clamp=1, yaw=90.0), rate_control(order, 6, (15, 0, 0), 1),
+                        entity_control(order, 7, (46.1, 11.2, 0), kind=13, clamp=1),
+                        entity_control(order, 9, (46.1, 11.3, 0), kind=77)]
+        if n == 120:
+            packets += [entity_control(order, 7, (0, 0, 0), kind=13, state=2)]
+        messages.append((100 + t, ig_control(order, int(t * 1e5)) + b"".join(packets)))
+    write_capture(path, messages)
+    figures, frames = report("--cigi", "--kinds", kinds, "--capture", path)
+    sets = sets_of(frames)
+    fighter = [s for s in sets if s["kind"] == 7]
+    speeds = [(s["time"], 0.05 * math.hypot(*s.get(1813, (0, 0)))) for s in fighter]
+    assert all(abs(v - 200) < 1 for t, v in speeds if 100.5 < t < 102), speeds
+    assert speeds[-1][1] < 1 and abs(fighter[-1]["latitude"] - 46.2 - 400 / 111170) < 1e-5, (speeds, fighter[-1])
+    (lorry, *more) = [s for s in sets if s["kind"] == 3]
+    assert any(abs(0.05 * s[1813][0] - 15) < 0.06 and abs(s[1813][1]) <= 2 for s in (lorry, *more)) and "height" not in lorry, lorry
+    assert more[-1]["time"] > 102 and figures["entities_deactivated"] == 1 and figures["entities_timed_out"] == 0
+    assert figures["types_without_rule"] == ["0.2.77.0.0.0.0"] and figures["left_out"]["attached"] == 181
+    assert figures["left_out"]["ownship"] == 181 and figures["targets_most"] == 3
+
+
+def cigi_that_is_none_is_refused_and_counted(work):
+    path, order = os.path.join(work, "cigi.pcap"), ">"
+    good = entity_control(order, 5, (46, 11, 100), kind=9)
+    control = ig_control(order)
+    write_capture(path, [
+        (0, b"\1"), (0, good), (0, control[:2] + b"\4" + control[3:] + good), (0, control[:6] + b"\0\0" + control[8:]),
+        (0, control + b"\2"), (0, control + good[:-1]), (0, control + good[:1] + b"\1" + good[2:]),
+        (0, control + struct.pack(">BBH", 2, 4, 5)), (0, control + entity_control(order, 5, (math.nan, 0, 0))),
+        (0, control + entity_control(order, 5, (91, 0, 0))), (0, control + rate_control(order, 5, (math.inf, 0, 0))),
+        (0, control + rate_control(order, 5, (1e6, 0, 0))), (0, state(1, geocentric(47, 8, 500)))])
+    figures, frames = report("--cigi", "--kinds", write_cigi_kinds(work), "--capture", path)
+    refused = figures["refused"]
+    assert frames == [] and refused == {"header": 4, "protocol": 3, "truncated": 1, "short": 1, "number": 2, "place": 1, "speed": 1,
+                                        "id": 0}, refused
+
+
 def mistakes_are_told_with_their_place(work):
     for words, code, said in (
             (["--capture", os.path.join(work, "nosuch")], 1, "nosuch: cannot be opened"),
@@ -275,6 +371,7 @@ def mistakes_are_told_with_their_place(work):
             (["--listen", "3000", "--group", "10.0.0.1"], 2, "multicast"),
             (["--listen", "3000", "--bind", "192.0.2.77"], 1, "cannot be listened to"),
             (["--listen", "3000", "--exercise", "1,x"], 2, "whole numbers"),
+            (["--listen", "3000", "--cigi"], 2, "--kinds"),
             (["--pdu", PROGRAM, "--targets", "9-3"], 2, "FIRST-LAST"),
             (["--pdu", PROGRAM, "--can", "nosuchcan0"], 1, "nosuchcan0")):
         _, text = run(*words, code=code)
@@ -304,7 +401,8 @@ def a_table_of_the_users_decides(work):
 CASES = [a_capture_becomes_targets_where_its_entities_are, tshark_reads_the_same_entities,
          a_recorded_drive_is_never_further_off_than_the_threshold, single_pdus_of_simulators_are_read_or_passed_over,
          what_comes_to_the_port_is_told_and_an_interrupt_removes_it, open_dis_sends_and_its_ships_are_where_it_says,
-         mistakes_are_told_with_their_place, a_table_of_the_users_decides]
+         a_cigi_host_tells_of_entities_where_tshark_sees_them, a_cigi_entity_moves_stops_and_goes,
+         cigi_that_is_none_is_refused_and_counted, mistakes_are_told_with_their_place, a_table_of_the_users_decides]
 
 
 def main():
