@@ -20,6 +20,15 @@ SITE = BUILD / "tmp/web/site"
 WAIT_S = 60
 
 
+def make_scene(folder):
+    """A golden country as an image file: 46 N 11 E is in its middle."""
+    flash = folder / "golden.flash"
+    subprocess.run([BUILD / "bin/tests/zcu102/golden_flash", flash], check=True)
+    data = flash.read_bytes()
+    offset, size = (int.from_bytes(data[at:at + 8], "little") for at in (32, 40))
+    (folder / "scene.lmdb").write_bytes(data[offset:offset + size])
+
+
 def make_site():
     """The page as `make web` has it, with a golden country in place of the built-in scene."""
     shutil.rmtree(SITE, ignore_errors=True)
@@ -28,11 +37,7 @@ def make_site():
         shutil.copy(ROOT / "tests/web" / name, SITE)
     for name in ("landmass.wasm", "golden.wasm"):
         shutil.copy(ROOT / "build/web" / name, SITE)
-    flash = SITE / "golden.flash"
-    subprocess.run([BUILD / "bin/tests/zcu102/golden_flash", flash], check=True)
-    data = flash.read_bytes()
-    offset, size = (int.from_bytes(data[at:at + 8], "little") for at in (32, 40))
-    (SITE / "scene.lmdb").write_bytes(data[offset:offset + size])
+    make_scene(SITE)
     (SITE.parent / "bad.log").write_text("no frame\n")
     subprocess.run([BUILD / "bin/landmass-nav", "--straight", "45.95,11,0,3000,180", "--seconds", "20", "--out",
                     SITE.parent / "bus.log"], check=True, stdout=subprocess.DEVNULL)

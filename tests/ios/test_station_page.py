@@ -1,0 +1,639 @@
+"""The instructor's page in Chromium: every control is worked, its frames are taken from the bus, and a display that
+hears them is read. TAP."""
+import json
+import os
+import pathlib
+import shutil
+import signal
+import sys
+import time
+
+ROOT = pathlib.Path(__file__).resolve().parents[2]
+sys.path[:0] = [str(ROOT / "tests/web"), str(ROOT / "tests/ios")]
+import test_browser as web  # noqa: E402  pylint: disable=wrong-import-position
+
+try:
+    from glass import Glass
+except ImportError:
+    Glass = None
+
+BUILD = pathlib.Path(os.environ.get("BUILD", "build/bench-linux"))
+TMP = BUILD / "tmp/ios"
+SITE = TMP / "site"
+OUT = TMP / "bus.log"
+STATION = 31
+NORTH = (46.12, 11.0)       # ahead of the aircraft, a third of the way up the glass
+FARTHER = (46.3, 11.0)
+SIDE = (46.05, 11.15)        # where a patch can be taken
+BOUNDS = {"title": "golden", "west": 10.5, "south": 45.6, "east": 11.5, "north": 46.4, "zoom_max": 12}
+FLAG_MALFUNCTION, SWITCH_FROZEN = 1 << 14, 1
+LOST_SECTOR = (5, 6)
+
+
+def make_site():
+    shutil.rmtree(TMP / "site", ignore_errors=True)
+    shutil.copytree(BUILD / "ios", SITE)
+    web.make_scene(TMP)
+    display = {"name": "left", "node": 20, "recording": "left"}
+    (SITE / "station.json").write_text(json.dumps({"bus": "loop", "may_send": True, "displays": [display]}))
+    (SITE / "map.json").write_text(json.dumps(BOUNDS))
+    OUT.write_text("")
+
+
+class Page:
+    """A page in a browser of its own, and what it puts on the bus."""
+
+    def __init__(self, url, width=1280, height=720):
+        self.b = web.Browser(url)
+        self.resize(width, height)
+
+    def resize(self, width, height, is_mobile=False):
+        self.b.driver.execute_cdp_cmd("Emulation.setDeviceMetricsOverride", {
+            "width": width, "height": height, "deviceScaleFactor": 1, "mobile": is_mobile})
+
+    def start(self):
+        self.b.get()
+        self.b.until("globalThis.station?.isOpen && station.world.ownAircraft()")
+        self.js("station.map.wholeMap(); station.map.isFollowing = false")
+        return self
+
+    def js(self, words):
+        return self.b.driver.execute_script(words)
+
+    def click(self, name):
+        self.b.find(name).click()
+
+    def tab(self, name):
+        self.click(f"tab-{name}")
+
+    def tool(self, name):
+        self.b.driver.find_element("css selector", f"input[name=tool][value={name}]").click()
+
+    def fill(self, name, value):
+        field = self.b.find(name)
+        if field.tag_name == "select":
+            field.find_element("css selector", f"option[value='{value}']").click() if field.find_elements(
+                "css selector", f"option[value='{value}']") else field.send_keys(str(value))
+        else:
+            field.clear()
+            field.send_keys(str(value))
+
+    def pixel(self, place):
+        return self.js(f"return station.map.toPixel({{latitude: {place[0]}, longitude: {place[1]}}})")
+
+    def point(self, *places, is_drag=False):
+        """Click at places of the map, or drag from the first to the second."""
+        canvas = self.b.find("map")
+        box, chain = canvas.size, web.ActionChains(self.b.driver)
+        for n, place in enumerate(places):
+            x, y = self.pixel(place)
+            chain.move_to_element_with_offset(canvas, round(x - box["width"] / 2), round(y - box["height"] / 2))
+            if not is_drag:
+                chain.click()
+            elif n == 0:
+                chain.click_and_hold()
+        if is_drag:
+            chain.release()
+        chain.perform()
+
+    def center(self, place):
+        self.js(f"station.map.goTo({{latitude: {place[0]}, longitude: {place[1]}}})")
+
+    def told(self, act, *ids):
+        """Frames of these identifiers that an act puts on the bus: the first of each, and what comes with them."""
+        self.js("station.keeper.kept.forEach((item) => { item.sentMs = performance.now(); })")  # no repeat comes between
+        before = OUT.stat().st_size
+        act()
+        end, wanted = time.monotonic() + 10, set(ids)
+        while time.monotonic() < end:
+            frames = [line.split()[2] for line in OUT.read_text()[before:].splitlines() if line.count(" ") == 2]
+            own = [f for f in frames if f[4:6] == f"{STATION:02X}" and int(f[:3], 16) in wanted]
+            if {int(f[:3], 16) for f in own} == wanted:
+                return own[:len(ids)]
+            time.sleep(0.03)
+        raise AssertionError(f"{wanted} did not come: {own}")
+
+    def reset(self):
+        """Nothing is told; the whole map is seen."""
+        self.js("station.commands.removeAllTargets(); station.commands.fairWeather(); station.commands.mendAll(); station.map.wholeMap()")
+        self.wait("targets.size + station.world.rain.size + station.world.jammer.size + station.world.malfunctions.size === 0")
+        self.tool("look")
+
+    def world(self, words):
+        return self.js(f"return station.world.{words}")
+
+    def wait(self, words):
+        self.b.until(f"station.world.{words}")
+
+
+TARGET = (1815, 1810, 1811, 1814)
+MOVING = (1815, 1810, 1811, 1813, 1814)
+
+
+def bright(p, kind=16, speed=0):
+    """The form: a target that every glass shows."""
+    p.tab("targets")
+    for name, value in (("target-kind", kind), ("target-speed", speed), ("target-course", 0), ("target-height", ""), ("target-rcs", 60)):
+        p.fill(name, value)
+
+
+def place(p, at=NORTH, speed=0):
+    bright(p, speed=speed)
+    p.tool("target")
+    return p.told(lambda: p.point(at), *(MOVING if speed else TARGET), 1816)
+
+
+def clear_targets(p):
+    p.tab("targets")
+    p.told(lambda: p.click("target-remove-all"), 1818)
+    p.wait("targets.size === 0")
+
+
+def a_target_is_placed_and_stands_on_the_glass(p, g):
+    flight = g.fly(place(p))
+    spot, all_of_it = g.middle(flight), g.changed(flight).mean()
+    assert spot and abs(spot[0] - 384) < 30, spot
+    assert 0 < all_of_it < 0.05, f"{100 * all_of_it:.2f} % of the glass"
+    assert flight["report"]["bus"]["refused_range"] == 0
+    p.wait("targets.size === 1")
+    assert "corner reflector" in p.b.find("target-list").text
+    clear_targets(p)
+
+
+def a_target_that_is_dragged_moves_on_the_glass(p, g):
+    near = g.middle(g.fly(place(p)))
+    p.tool("look")
+    p.wait("targets.size === 1")
+    far = g.middle(g.fly(p.told(lambda: p.point(NORTH, FARTHER, is_drag=True), *TARGET, 1816)))
+    assert far[1] < near[1] - 100 and abs(far[0] - 384) < 30, (near, far)
+    clear_targets(p)
+
+
+def a_way_is_gone_with_its_speed(p, g):
+    stands = g.middle(g.fly(place(p)))
+    clear_targets(p)
+    place(p, speed=900)
+    p.wait("targets.size === 1")
+    p.tool("route")
+    frames = p.told(lambda: p.point(FARTHER), *MOVING, 1816)
+    assert p.js("return station.targets.routeOf(0).length") == 1
+    moved = g.middle(g.fly(frames))
+    assert moved[1] < stands[1] - 12, (stands, moved)
+    p.b.until("station.world.targets.get(0).northMs > 890")
+    p.click("target-route-clear")
+    p.b.until("station.targets.routeOf(0).length === 0")
+    clear_targets(p)
+
+
+def a_target_is_changed_moved_and_removed(p, g):
+    first = place(p)
+    p.wait("targets.size === 1")
+    p.center(FARTHER)
+    far = p.told(lambda: p.click("target-move"), *TARGET, 1816)
+    p.wait("targets.get(0).latitude > 46.2")
+    assert g.middle(g.fly(first, far))[1] < g.middle(g.fly(first))[1] - 100
+    p.fill("target-rcs", -40)
+    p.fill("target-kind", 1)
+    faint = p.told(lambda: p.click("target-apply"), *TARGET, 1816)
+    assert not g.middle(g.fly(faint)), "a person of -40 dBsm is seen"
+    p.click("target-loop")
+    p.told(lambda: p.click("target-waypoint"), *TARGET, 1816)
+    p.b.until("station.keeper.kept.get('target 0').target.isLoop && station.targets.routeOf(0).length === 1")
+    gone = p.told(lambda: p.click("target-remove"), 1817)
+    assert not g.changed(g.fly(first, gone)).any(), "a removed target is still seen"
+    p.wait("targets.size === 0")
+    p.js("station.map.wholeMap()")
+
+
+def all_targets_go_at_once(p, g):
+    frames = place(p) + place(p, FARTHER)
+    p.wait("targets.size === 2")
+    gone = p.told(lambda: p.click("target-remove-all"), 1818)
+    assert g.changed(g.fly(frames)).any() and not g.changed(g.fly(frames, gone)).any()
+    p.wait("targets.size === 0")
+
+
+RAIN, JAMMER = (1800, 1801, 1802, 1803), (1804, 1805, 1806)
+
+
+def rain_is_placed_changed_dragged_and_removed(p, g):
+    p.tab("weather")
+    p.fill("rain-radius", 8)
+    p.fill("rain-rate", 100)
+    p.tool("rain")
+    frames = p.told(lambda: p.point(NORTH), *RAIN)
+    assert g.changed(g.fly(frames)).mean() > 0.01
+    p.wait("rain.size === 1")
+    p.tool("look")
+    dragged = p.told(lambda: p.point(NORTH, FARTHER, is_drag=True), *RAIN)
+    assert g.changed(g.fly(frames, dragged), than=(frames,)).mean() > 0.005
+    p.fill("rain-rate", 5)
+    buttons = p.b.driver.find_elements("css selector", "#rain-list button")
+    weak = p.told(buttons[0].click, *RAIN)
+    assert g.changed(g.fly(weak)).mean() < g.changed(g.fly(dragged)).mean()
+    p.center(NORTH)
+    assert p.told(buttons[1].click, *RAIN)[0][12:] != weak[0][12:]
+    p.js("station.map.wholeMap()")
+    gone = p.told(buttons[2].click, 1807)
+    assert not g.changed(g.fly(frames, gone)).any()
+    p.wait("rain.size === 0")
+    p.told(lambda: p.click("rain-place"), *RAIN)
+    p.told(lambda: p.click("weather-clear"), 1807)
+
+
+def a_jammer_is_placed_and_fair_weather_ends_it(p, g):
+    p.tab("weather")
+    p.fill("jammer-ratio", 60)
+    p.tool("jammer")
+    frames = p.told(lambda: p.point(NORTH), *JAMMER)
+    flight = g.fly(frames)
+    assert flight["picture"].mean() > g.fly()["picture"].mean() + 1
+    p.wait("jammer.size === 1")
+    p.told(lambda: p.click("jammer-place"), *JAMMER)
+    p.wait("jammer.size === 2")
+    fair = p.told(lambda: p.click("weather-clear"), 1807)
+    assert not g.changed(g.fly(frames, fair)).any()
+    p.wait("jammer.size === 0")
+
+
+def sea_and_wind_are_told(p, g):
+    p.tab("weather")
+    p.fill("sea-state", 8)
+    rough = p.told(lambda: p.click("sea-tell"), 1808)
+    p.fill("wind-from", 45)
+    wind = p.told(lambda: p.click("wind-tell"), 1809)
+    assert g.changed(g.fly(rough)).any(), "the sea is as it was"
+    assert g.changed(g.fly(rough, wind), than=(rough,), least=8).any(), "the wind does nothing"
+    p.wait("sea?.value === 8 && station.world.wind?.value === 45")
+    time.sleep(0.4)
+    assert "state 8" in p.b.find("sea-told").text and "45" in p.b.find("wind-told").text
+    fair = p.told(lambda: p.click("weather-clear"), 1807)
+    assert not g.changed(g.fly(rough, wind, fair)).any()
+
+
+def each_malfunction_breaks_the_picture_and_is_mended(p, g):
+    p.tab("malfunctions")
+    mean = g.fly()["picture"].mean()
+    rows = p.b.driver.find_elements("css selector", "#malfunction-list tr")
+    assert len(rows) == 10
+    frames = []
+    p.fill("malfunction-8", 20)
+    for kind, row in enumerate(rows):
+        frames.append(p.told(row.find_element("class name", "break").click, 1825))
+        p.wait(f"malfunctions.has({kind})")
+    for kind in (0, 1, 2, 3, 4, 7, 8):
+        flight = g.fly(frames[kind])
+        assert g.changed(flight).mean() > 0.002, f"malfunction {kind}: {g.changed(flight).mean():.4f} of the glass"
+        assert flight["said"][1500][0] & FLAG_MALFUNCTION, kind
+    means = [g.fly(frames[kind])["picture"].mean() for kind in (0, 1)]
+    assert max(means) < mean, (means, mean)
+    wedge = g.fly(frames[5] + frames[6])
+    left, right = g.changed(wedge)[:, :384].sum(), g.changed(wedge)[:, 400:].sum()
+    assert wedge["picture"].mean() < mean and left > 5 * right, (left, right)
+    for kind, row in enumerate(rows[:2]):
+        mended = p.told(row.find_element("class name", "mend").click, 1826)
+        flight = g.fly(frames[kind], mended)
+        assert not g.changed(flight).any() and not flight["said"][1500][0] & FLAG_MALFUNCTION, kind
+    mended = p.told(lambda: p.click("mend-all"), 1826)
+    assert not g.changed(g.fly(frames[2] + frames[4], mended)).any()
+    p.wait("malfunctions.size === 0")
+
+
+def a_dead_key_does_nothing(p, g):
+    p.tab("malfunctions")
+    p.fill("malfunction-9", 12)
+    dead = p.told(lambda: p.b.driver.find_elements("class name", "break")[9].click(), 1825)
+    p.told(lambda: p.click("mend-all"), 1826)
+    p.tab("displays")
+    key = p.told(lambda: p.b.driver.find_element("css selector", "[data-button='12']").click(), 1531)
+    assert g.fly(key)["said"][1519][3] == 3, "key 12 opens the BIT page"
+    assert g.fly(dead, key)["said"][1519][3] == 0, "a dead key does nothing"
+
+
+def every_key_of_the_bezel_is_obeyed(p, g):
+    p.tab("displays")
+    for number in range(1, 29):
+        key = p.b.driver.find_element("css selector", f"[data-button='{number}']")
+        down_and_up = both_of(p, key)
+        controls = g.fly(*[[frame] for frame in down_and_up])["report"]["controls"]
+        assert controls["obeyed"] == 2 and controls["bad"] == controls["torn"] == 0, (number, controls)
+
+
+def both_of(p, key):
+    before = OUT.stat().st_size
+    key.click()
+    for _ in range(200):
+        own = [line.split()[2] for line in OUT.read_text()[before:].splitlines() if " 5FB#1F" in line]
+        if len(own) == 2:
+            return own
+        time.sleep(0.02)
+    raise AssertionError(f"a key went down and up: {own}")
+
+
+def the_picture_is_held_and_released(p, g):
+    p.tab("displays")
+    held = p.told(lambda: p.click("control-freeze"), 1532)
+    released = p.told(lambda: p.click("control-release"), 1532)
+    assert g.fly(held)["said"][1521][1] & SWITCH_FROZEN
+    assert not g.fly(held, released)["said"][1521][1] & SWITCH_FROZEN
+
+
+def mode_range_width_and_gain_are_obeyed(p, g):
+    p.tab("displays")
+    p.fill("control-mode", 2)
+    p.fill("control-field", 1)
+    assert g.fly(p.told(lambda: p.click("control-sector"), 1536))["said"][1519][1:3] == [2, 1]
+    p.fill("control-nm", 20)
+    assert g.fly(p.told(lambda: p.click("control-range"), 1537))["said"][1520] == [20]
+    p.fill("control-width-number", 1)
+    assert g.fly(p.told(lambda: p.click("control-width"), 1538))["said"][1521][0] == 30
+    p.fill("control-db", -6)
+    assert g.fly(p.told(lambda: p.click("control-gain"), 1539))["said"][1522] == [-6]
+
+
+def cursor_steerpoint_and_patch_go_where_the_map_says(p, g):
+    p.tab("displays")
+    p.tool("cursor")
+    latitude, longitude = (round(x * 1e7) for x in SIDE)
+    said = g.fly(p.told(lambda: p.point(SIDE), 1540, 1541))["said"]
+    assert abs(said[1510][0] - latitude) < 30000 and abs(said[1511][0] - longitude) < 30000, (said[1510], said[1511])
+    p.tool("steer")
+    steer = p.told(lambda: p.point((46.15, 11.0)), 1542, 1543)
+    assert g.changed(g.fly(steer)).any()
+    assert not g.changed(g.fly(steer, p.told(lambda: p.click("control-steer-off"), 1542, 1543))).any()
+    p.tool("patch")
+    said = g.fly(p.told(lambda: p.point(SIDE), 1544, 1545, 1546))["said"]
+    assert said[1519][0] == 1 and abs(said[1516][0] - latitude) < 30000, said
+    p.center(SIDE)
+    for name, ids in (("cursor", (1540, 1541)), ("steer", (1542, 1543)), ("patch", (1544, 1545, 1546))):
+        assert len(p.told(lambda: p.click(f"control-{name}-here"), *ids)) == len(ids)
+    p.js("station.map.wholeMap()")
+
+
+def designate_drop_slew_and_knob_are_obeyed(p, g):
+    p.tab("displays")
+    designate, drop = (p.told(lambda: p.click(f"control-{name}"), 1532) for name in ("designate", "drop"))
+    p.center(SIDE)
+    cursor = p.told(lambda: p.click("control-cursor-here"), 1540, 1541)
+    assert g.fly(cursor, designate)["said"][1519][0] == 1 and g.fly(cursor, designate, drop)["said"][1519][0] == 0
+    for way, item, sign in (("1,0", 1511, 1), ("-1,0", 1511, -1), ("0,1", 1510, 1), ("0,-1", 1510, -1)):
+        button = p.b.driver.find_element("css selector", f"[data-slew='{way}']")
+        before = OUT.stat().st_size
+        web.ActionChains(p.b.driver).click_and_hold(button).pause(0.2).release().perform()
+        time.sleep(0.3)
+        own = [line.split()[2] for line in OUT.read_text()[before:].splitlines() if " 5FE#1F" in line or " 5FF#1F" in line]
+        assert len(own) == 4, own
+        flight, still = g.fly(own[:2], own[2:])["said"], g.fly()["said"]
+        assert sign * (flight[item][0] - still[item][0]) > 10000, (way, flight[item], still[item])
+    before = OUT.stat().st_size
+    p.js("const k = document.getElementById('control-knob'); k.value = 1000; k.dispatchEvent(new Event('change'))")
+    time.sleep(0.3)
+    knob = [line.split()[2] for line in OUT.read_text()[before:].splitlines() if " 5FD#1F" in line]
+    assert g.fly(knob)["picture"].mean() > g.fly()["picture"].mean()
+
+
+def the_clock_freezes_runs_jumps_and_has_a_seed(p, g):
+    p.tab("clock")
+    runs = p.told(lambda: p.click("run"), 1821, 1820)
+    p.wait("clock?.rate === 1")
+    ship = place(p, speed=900)
+    p.wait("targets.size === 1")
+    p.tab("clock")
+    frozen = p.told(lambda: p.click("freeze"), 1821, 1820)
+    p.wait("clock?.rate === 0")
+    time.sleep(0.5)
+    assert "FROZEN" in p.b.find("exercise-state").text and p.b.find("freeze").get_attribute("aria-pressed") == "true"
+    at = p.world("exerciseMs()")
+    time.sleep(0.5)
+    assert p.world("exerciseMs()") == at
+    p.fill("clock-time", "1:00:00")
+    p.told(lambda: p.click("clock-jump"), 1821, 1820)
+    p.wait("exerciseMs() === 3600000")
+    p.told(lambda: p.b.driver.find_element("css selector", "[data-by='60']").click(), 1821, 1820)
+    p.wait("exerciseMs() === 3660000")
+    p.told(lambda: p.b.driver.find_element("css selector", "[data-by='-10']").click(), 1821, 1820)
+    p.wait("exerciseMs() === 3650000")
+    p.fill("clock-rate", 4)
+    fast = p.told(lambda: p.click("clock-rate-tell"), 1821, 1820)
+    p.wait("clock?.rate === 4")
+    p.fill("clock-seed", 77)
+    seed = p.told(lambda: p.click("clock-seed-tell"), 1822, 1821, 1820)
+    assert g.changed(g.fly(seed), than=(seed[1:],)).any(), "another seed draws the same noise"
+    stands, moves, moves_fast = (g.middle(g.fly(clock + ship), than=(clock,))[1] for clock in (frozen, runs, fast))
+    assert stands - moves > 3 and stands - moves_fast > 2 * (stands - moves), (stands, moves, moves_fast)
+    clear_targets(p)
+
+
+def what_cannot_be_is_said_and_not_sent(p, _):
+    p.tab("weather")
+    p.fill("rain-rate", 500)
+    before = OUT.read_text().count(" 708#1F")
+    p.click("rain-place")
+    assert "1 to 150" in p.b.find("message").text
+    time.sleep(0.3)
+    assert OUT.read_text().count(" 708#1F") == before
+    p.fill("rain-rate", 30)
+    p.tab("clock")
+    p.fill("clock-time", "noon")
+    p.click("clock-jump")
+    assert "hours:minutes:seconds" in p.b.find("message").text
+
+
+def two_instructors_agree(p, _):
+    other = Page(p.b.url).start()
+    try:
+        place(p)
+        other.wait("targets.size === 1 && station.world.targets.get(0).kind === 16")
+        other.tab("targets")
+        other.b.until("document.querySelector('#target-list button')")
+        other.b.driver.find_element("css selector", "#target-list button").click()
+        other.b.until("!document.getElementById('target-remove').disabled")
+        other.fill("target-kind", 13)
+        other.click("target-apply")
+        p.wait("targets.get(0).kind === 13")
+        p.b.until("!station.keeper.kept.has('target 0')")
+        assert other.js("return station.keeper.kept.has('target 0')")
+        p.b.until("document.getElementById('target-list').textContent.includes('another page')")
+        other.b.driver.quit()  # what it kept is kept on
+        p.b.until("station.keeper.kept.has('target 0')")
+        assert p.world("targets.size") == 1
+        fresh = Page(p.b.url).start()
+        try:
+            fresh.wait("targets.size === 1 && station.world.targets.get(0).kind === 13")
+        finally:
+            fresh.b.driver.quit()
+    finally:
+        other.b.driver.quit()
+    clear_targets(p)
+
+
+def stale_navigation_and_a_lost_connection_are_plain(p, _):
+    server = p.server
+    server.child.send_signal(signal.SIGUSR1)
+    p.b.until("document.getElementById('own').textContent.includes('STALE')")
+    p.b.until("document.getElementById('own').textContent.includes('LOST')")
+    server.child.send_signal(signal.SIGUSR1)
+    p.b.until("document.getElementById('own').textContent.startsWith('Own aircraft,')")
+    server.stop()
+    p.b.until("document.getElementById('lost').textContent.includes('Connection lost')")
+    assert p.b.find("freeze").is_enabled() is False and p.b.find("connection").text == "NO CONNECTION"
+    server.start()
+    p.b.until("station.isOpen && document.getElementById('lost').textContent === ''")
+    assert p.b.find("freeze").is_enabled()
+    p.b.until("document.getElementById('events').textContent.includes('connection lost')")
+
+
+def the_keyboard_alone_is_enough(p, g):
+    p.start()
+    for panel in ("targets", "weather", "malfunctions", "clock", "displays"):
+        p.tab(panel)
+        wanted = p.js("return [...document.querySelectorAll('button, input, select, canvas, a, [tabindex=\"0\"]')].filter((e) => "
+                      "e.checkVisibility() && !e.disabled && !e.matches('fieldset:disabled *') && e.tabIndex >= 0 && !e.matches('[type=radio]:not(:checked)')).length")
+        reached = set()
+        for _ in range(wanted + 6):
+            p.b.press(web.Keys.TAB)
+            reached.add(p.js("return [...document.querySelectorAll('*')].indexOf(document.activeElement)"))
+        assert len(reached) >= wanted, f"{panel}: {len(reached)} of {wanted}"
+    bright(p)
+    p.center(NORTH)
+    p.b.driver.find_element("css selector", "input[name=tool][value=look]").send_keys(web.Keys.ARROW_RIGHT)
+    p.js("document.getElementById('map').focus()")
+    frames = p.told(lambda: p.b.press(web.Keys.ENTER), *TARGET, 1816)
+    assert abs(g.middle(g.fly(frames))[0] - 384) < 30
+    p.wait("targets.size === 1")
+    before = p.js("return station.map.center[0]")
+    p.b.press(web.Keys.ARROW_RIGHT)
+    p.b.press("+")
+    assert p.js("return station.map.center[0]") > before
+    moved = p.told(lambda: p.b.press("m"), *TARGET, 1816)
+    assert moved[2] != frames[2]
+    p.told(lambda: p.b.press(web.Keys.DELETE), 1817)
+    p.b.press(web.Keys.ESCAPE)
+    assert p.js("return station.tool()") == "look"
+    p.b.find("tab-targets").send_keys(web.Keys.ARROW_RIGHT)
+    assert p.js("return document.activeElement.id") == "tab-weather" and p.b.find("panel-weather").is_displayed()
+
+
+def fingers_pan_zoom_and_place_on_a_tablet(p, g):
+    p.resize(800, 1180, is_mobile=True)
+    try:
+        p.js("station.map.wholeMap(); document.querySelector('main').scrollTop = 0")
+        time.sleep(0.3)
+        box = p.js("const r = document.getElementById('map').getBoundingClientRect(); return [r.left, r.top, r.width, r.height]")
+        middle = (box[0] + box[2] / 2, box[1] + box[3] / 2)
+
+        def touch(kind, *points):
+            p.b.driver.execute_cdp_cmd("Input.dispatchTouchEvent", {
+                "type": kind, "touchPoints": [{"x": x, "y": y, "id": n} for n, (x, y) in enumerate(points)]})
+        zoom = p.js("return station.map.zoom")
+        touch("touchStart", (middle[0] - 30, middle[1]), (middle[0] + 30, middle[1]))
+        for d in (60, 90, 120):
+            touch("touchMove", (middle[0] - d, middle[1]), (middle[0] + d, middle[1]))
+        touch("touchEnd")
+        assert abs(p.js("return station.map.zoom") - zoom - 2) < 0.2, p.js("return station.map.zoom") - zoom
+        before = p.js("return station.map.center[0]")
+        touch("touchStart", middle)
+        touch("touchMove", (middle[0] - 20, middle[1]))
+        touch("touchMove", (middle[0] - 60, middle[1]))
+        touch("touchEnd")
+        assert p.js("return station.map.center[0]") > before
+        bright(p)
+        p.center(NORTH)
+        p.tool("target")
+        p.js("document.querySelector('main').scrollTop = 0")
+
+        def tap():
+            touch("touchStart", middle)
+            touch("touchEnd")
+        frames = p.told(tap, *TARGET, 1816)
+        assert abs(g.middle(g.fly(frames))[0] - 384) < 40
+        clear_targets(p)
+    finally:
+        p.resize(1280, 720)
+
+
+def the_page_fits_and_is_calm_where_motion_is_not_wanted(p, _):
+    for width, height in ((1280, 720), (800, 1180), (1180, 820)):
+        p.resize(width, height)
+        for panel in ("targets", "weather", "malfunctions", "clock", "displays"):
+            p.tab(panel)
+            wide = p.js("return [document.documentElement.scrollWidth, document.getElementById('right').scrollWidth - document.getElementById('right').clientWidth]")
+            assert wide[0] <= width and wide[1] <= 0, (width, panel, wide)
+    p.resize(1280, 720)
+    p.js("document.activeElement.blur(); station.drawn = 0; const d = station.map.draw.bind(station.map); station.map.draw = (l) => { station.drawn++; d(l); }")
+    p.b.driver.execute_cdp_cmd("Emulation.setEmulatedMedia", {"features": [{"name": "prefers-reduced-motion", "value": "reduce"}]})
+    time.sleep(2)
+    p.js("station.drawn = 0")
+    time.sleep(2)
+    drawn = p.js("return station.drawn")
+    p.b.driver.execute_cdp_cmd("Emulation.setEmulatedMedia", {"features": []})
+    assert 1 <= drawn <= 3, drawn
+
+
+def the_page_asks_no_other_server_and_has_no_error(p, _):
+    names = p.js("return performance.getEntriesByType('resource').map((entry) => entry.name)")
+    assert names and all(name.startswith((p.b.url, "data:")) for name in names), names
+    errors = [e for e in p.b.driver.get_log("browser") if e["level"] == "SEVERE" and "/map/" not in e["message"] and "WebSocket" not in e["message"]]
+    assert not errors, errors
+
+
+TESTS = [a_target_is_placed_and_stands_on_the_glass, a_target_that_is_dragged_moves_on_the_glass, a_way_is_gone_with_its_speed,
+         a_target_is_changed_moved_and_removed, all_targets_go_at_once, rain_is_placed_changed_dragged_and_removed,
+         a_jammer_is_placed_and_fair_weather_ends_it, sea_and_wind_are_told, each_malfunction_breaks_the_picture_and_is_mended,
+         a_dead_key_does_nothing, every_key_of_the_bezel_is_obeyed, the_picture_is_held_and_released, mode_range_width_and_gain_are_obeyed,
+         cursor_steerpoint_and_patch_go_where_the_map_says, designate_drop_slew_and_knob_are_obeyed,
+         the_clock_freezes_runs_jumps_and_has_a_seed, what_cannot_be_is_said_and_not_sent, two_instructors_agree,
+         stale_navigation_and_a_lost_connection_are_plain, the_keyboard_alone_is_enough, fingers_pan_zoom_and_place_on_a_tablet,
+         the_page_fits_and_is_calm_where_motion_is_not_wanted, the_page_asks_no_other_server_and_has_no_error]
+
+
+class Server:
+    """The bus and the site; it comes back at the same port."""
+
+    def __init__(self, log):
+        self.log, self.port = log, 0
+        self.start()
+
+    def start(self):
+        self.child, self.url = web.node(ROOT / "tests/ios/loop.mjs", SITE, self.log, OUT, self.port)
+        self.port = self.url.split(":")[2].strip("/")
+
+    def stop(self):
+        self.child.kill()
+        self.child.wait()
+
+
+def main():
+    lacks = "python3-selenium" if web.webdriver is None else "python3-gdal" if Glass is None else next(
+        (name for name in ("chromium", "chromedriver", "node") if shutil.which(name) is None), None)
+    if lacks:
+        print(f"ok 1 # SKIP the instructor's page in a browser\n# skipped: {lacks} is missing: run make deps\n1..1")
+        return 0
+    TMP.mkdir(parents=True, exist_ok=True)
+    make_site()
+    glass = Glass(BUILD / "bin", TMP / "scene.lmdb", TMP / "glass")
+    glass.run("landmass-nav", "--straight", "45.7,11,0,3000,60", "--seconds", 600, "--out", TMP / "nav.log", "--quiet")
+    server = Server(TMP / "nav.log")
+    page, failed = Page(server.url), 0
+    page.server = server
+    tests = [t for t in TESTS if len(sys.argv) < 2 or t.__name__ in sys.argv[1:]]
+    try:
+        page.start()
+        for number, test in enumerate(tests, 1):
+            begin = time.monotonic()
+            try:
+                page.reset()
+                test(page, glass)
+                print(f"ok {number} - {test.__name__}\n# {time.monotonic() - begin:.1f} s", flush=True)
+            except Exception as error:  # pylint: disable=broad-except
+                failed += 1
+                print(f"not ok {number} - {test.__name__}\n# {type(error).__name__}: {error}", flush=True)
+    finally:
+        page.b.driver.quit()
+        server.stop()
+    print(f"1..{len(tests)}")
+    return failed > 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
