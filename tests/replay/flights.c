@@ -17,10 +17,9 @@
 #include "memory_flash.h"
 #include "record.h"
 #include "replay.h"
-#include "tiny_image.h"
+#include "tiny_country.h"
 
 #include <inttypes.h>
-#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -52,33 +51,9 @@ struct flight {
     FILE *log, *sums;
 };
 
-/* ---- the country ---- */
-
-static struct tiny_cell cell_at(void *ctx, const struct tiny_place *p)
-{
-    (void)ctx;
-    if (hypot(p->east_m + 2000, p->north_m) < 1500) {
-        return (struct tiny_cell){-40, TINY_WATER, 0};
-    }
-    const bool is_house =
-        fabs(remainder(p->east_m, 400)) < 50 && fabs(remainder(p->north_m, 400)) < 50;
-    return is_house ? (struct tiny_cell){0, TINY_STRUCTURE, 5}
-                    : (struct tiny_cell){-18, TINY_SOIL, 0};
-}
-
-static double elevation_at(void *ctx, const struct tiny_place *p)
-{
-    (void)ctx;
-    return 200 + 80 * sin(p->east_m / 900) * cos(p->north_m / 1300);
-}
-
 static int write_image(const char *path)
 {
-    struct tiny_spec spec = tiny_spec_at(46, 11);
-    spec.shift0 = 11;
-    spec.rows = spec.columns = 10;
-    spec.cell = cell_at;
-    spec.elevation_m = elevation_at;
+    const struct tiny_spec spec = tiny_country(10);
     struct tiny_image image;
     if (tiny_image_build(&image, &spec) != 0) {
         return -1;

@@ -10,7 +10,7 @@ $(REPLAY)/flights $(REPLAY)/flights-clang: LDLIBS = $(call pkgs,libs,libpng)
 $(REPLAY)/flights-sanitized: LDLIBS = $(LINK_sanitized) $(call pkgs,libs,libpng)
 
 TESTS += $(REPLAY)/test_replay
-$(REPLAY)/test_replay: tests/replay/test_replay.sh $(addprefix $(REPLAY)/,flights $(REPLAY_VARIANTS)) replay-arm64
+$(REPLAY)/test_replay: tests/replay/test_replay.sh $(addprefix $(REPLAY)/,flights $(REPLAY_VARIANTS)) replay-arm64 | $(O)/bin/landmass-sim $(PANEL)
 	@mkdir -p $(@D)
 	@cp $< $@
 	@chmod +x $@
@@ -19,11 +19,12 @@ $(REPLAY)/test_replay: tests/replay/test_replay.sh $(addprefix $(REPLAY)/,flight
 replay-arm64: | golden-arm64 # makes of one folder, one after the other
 ifeq ($(BOARD),bench-linux)
 	@! command -v aarch64-linux-gnu-gcc >/dev/null || $(call make_board,panel-linux) ARCH=arm64 \
-	    O=build/panel-linux-arm64 build/panel-linux-arm64/bin/tests/replay/flights
+	    O=build/panel-linux-arm64 \
+	    $(addprefix build/panel-linux-arm64/bin/,tests/replay/flights landmass-panel)
 endif
 
 # make flights: the proof in full, on this machine's two compilers and the panel's processor.
 FLIGHTS ?= 1000
 .PHONY: flights
-flights: $(addprefix $(REPLAY)/,flights flights-clang) replay-arm64 ## Record FLIGHTS=1000 flights of random events; show them again by other builds
+flights: $(addprefix $(REPLAY)/,flights flights-clang) $(O)/bin/landmass-sim $(PANEL) replay-arm64 ## Record FLIGHTS=1000 flights of random events; show them again by other builds
 	@sh tests/replay/test_replay.sh $(FLIGHTS)

@@ -42,6 +42,24 @@ if [ -x "$programs/flights-sanitized" ]; then
     few=$((flights < 4 ? flights : 4))
     case_is "the sanitizers find nothing in $few of them" "$programs/flights-sanitized" replay "$image" "$folder/gcc" 1 "$few"
 fi
+# The panel itself, whose process is killed in flight: as far as it had written, the bench shows it.
+panel_flies() { # FOLDER RUNNER PROGRAM...
+    printf '%s\n' "database = $image" 'can = none' 'glass = none' 'stick = none' 'realtime.priority = 0' \
+        'realtime.memory = free' "record = $1" >"$folder/panel.conf"
+    where=$1
+    shift
+    timeout -k 2 -s KILL 5 "$@" --config "$folder/panel.conf" 2>/dev/null
+    "${BUILD:-build/bench-linux}/bin/landmass-sim" --db "$image" --replay "$where/flight-00001-000.log" >"$folder/said" &&
+        grep -q 'failed 0; departures 0; the recording has no end' "$folder/said" &&
+        [ "$(sed -n 's/^replay: \([0-9]*\) steps.*/\1/p' "$folder/said")" -gt 300 ]
+}
+case_is 'what a panel had recorded when it was killed is shown' panel_flies "$folder/pc-panel" "$build/bin/landmass-panel"
+arm_panel=build/panel-linux-arm64/bin/landmass-panel
+if [ ! -x "$arm_panel" ] || ! command -v qemu-aarch64-static >/dev/null; then
+    skip 'and of an ARM64 panel' 'the cross compiler or qemu-aarch64-static is missing: run make deps'
+else
+    case_is 'and of an ARM64 panel' panel_flies "$folder/arm64-panel" qemu-aarch64-static "$arm_panel"
+fi
 arm='an ARM64 panel shows what the PC recorded, and the PC what it recorded'
 some=$((flights < 100 ? 3 : flights / 10))
 if [ ! -x "$arm64" ]; then

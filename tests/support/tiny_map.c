@@ -16,6 +16,15 @@ void tiny_map_open(struct tiny_map *m, const struct tiny_spec *spec, uint32_t ti
     assert_int_equal(lm_tile_cache_init(&m->tiles, &m->db, m->pool, pool_bytes, POLLS), LM_OK);
 }
 
+void tiny_map_open_soil(struct tiny_map *m, uint32_t tiles, struct lm_tone *tone)
+{
+    struct tiny_spec spec = tiny_spec_at(46, 11);
+    spec.shift0 = 12;
+    spec.rows = spec.columns = 4;
+    tiny_map_open(m, &spec, tiles);
+    assert_int_equal(lm_tone_set(tone, &lm_radar_default.sar.tone), LM_OK);
+}
+
 void tiny_map_close(struct tiny_map *m)
 {
     tiny_image_free(&m->image);

@@ -4,6 +4,7 @@
 #define TINY_MAP_H
 
 #include "lm/tile_cache.h"
+#include "lm/tone.h"
 
 #include "memory_flash.h"
 #include "tiny_image.h"
@@ -19,6 +20,9 @@ struct tiny_map {
 /* Build the image, and open it with a pool of `tiles` tiles, none of which is read yet but those of
  * the coarsest level. The map must not move. */
 void tiny_map_open(struct tiny_map *m, const struct tiny_spec *spec, uint32_t tiles);
+/* The same of flat soil for 5 km round 46 N 11 E, and the tone of a patch of the built-in radar. */
+void tiny_map_open_soil(struct tiny_map *m, uint32_t tiles, struct lm_tone *tone);
+
 void tiny_map_close(struct tiny_map *m);
 
 /* Serve the cache until nothing that was asked for is missing; fails when that has no end. */

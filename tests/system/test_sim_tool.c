@@ -5,33 +5,14 @@
  *   test_sim_tool leave-fine-out FILE   the same without the two finest levels
  *   test_sim_tool pixels FILE.png RRGGBB    print how many pixels have that colour
  *   test_sim_tool size FILE.png             print WIDTHxHEIGHT */
-#include "tiny_image.h"
+#include "tiny_country.h"
 
-#include <math.h>
 #include <png.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
 enum { TOP_LEVEL = 5 };
-
-static struct tiny_cell cell_at(void *ctx, const struct tiny_place *p)
-{
-    (void)ctx;
-    if (hypot(p->east_m + 2000, p->north_m) < 1500) {
-        return (struct tiny_cell){-40, TINY_WATER, 0};
-    }
-    const bool is_house =
-        fabs(remainder(p->east_m, 400)) < 50 && fabs(remainder(p->north_m, 400)) < 50;
-    return is_house ? (struct tiny_cell){0, TINY_STRUCTURE, 5}
-                    : (struct tiny_cell){-18, TINY_SOIL, 0};
-}
-
-static double elevation_at(void *ctx, const struct tiny_place *p)
-{
-    (void)ctx;
-    return 300 + 80 * sin(p->east_m / 900) * cos(p->north_m / 1300);
-}
 
 static bool is_fine(void *ctx, uint8_t level, uint32_t row, uint32_t column)
 {
@@ -43,13 +24,9 @@ static bool is_fine(void *ctx, uint8_t level, uint32_t row, uint32_t column)
 
 static int write_image(const char *path, bool is_broken, bool is_coarse)
 {
-    struct tiny_spec spec = tiny_spec_at(46, 11);
-    spec.shift0 = 11;
-    spec.rows = spec.columns = 8;
+    struct tiny_spec spec = tiny_country(8);
     spec.level_count = TOP_LEVEL + 1;
     spec.margin = 2;
-    spec.cell = cell_at;
-    spec.elevation_m = elevation_at;
     spec.leave_out = is_coarse ? is_fine : NULL;
     struct tiny_image image;
     if (tiny_image_build(&image, &spec) != 0) {

@@ -17,16 +17,6 @@ static struct tiny_map map;
 static struct lm_line line;
 static struct lm_tone tone;
 
-/* Flat soil for 5 km around 46 N 11 E, all of it read. */
-static void open_soil(void)
-{
-    struct tiny_spec spec = tiny_spec_at(46, 11);
-    spec.shift0 = 12;
-    spec.rows = spec.columns = 4;
-    tiny_map_open(&map, &spec, SLOTS);
-    assert_int_equal(lm_tone_set(&tone, &lm_radar_default.sar.tone), LM_OK);
-}
-
 static void draw_patch_of_cells(const struct lm_target_set *set, uint32_t cell_mm,
                                 uint8_t picture[SIDE][SIDE])
 {
@@ -57,7 +47,7 @@ static void draw_patch(const struct lm_target_set *set, uint8_t picture[SIDE][SI
 TEST(a_corner_is_bright_with_its_side_lobes_and_the_rest_is_untouched)
 {
     static uint8_t without[SIDE][SIDE], with[SIDE][SIDE];
-    open_soil();
+    tiny_map_open_soil(&map, SLOTS, &tone);
     /* 203.2 m north and 122 m east of the centre, looking east: on a ray 202 m to the left at the
      * centre, line 128 - 50.5, cell 158. */
     struct lm_target t = point_at(46, 11, 0, 0);
@@ -84,7 +74,7 @@ TEST(a_corner_is_bright_with_its_side_lobes_and_the_rest_is_untouched)
 TEST(a_patch_has_nothing_of_the_targets_of_the_one_before_it)
 {
     static uint8_t before[SIDE][SIDE], with[SIDE][SIDE], behind[SIDE][SIDE];
-    open_soil();
+    tiny_map_open_soil(&map, SLOTS, &tone);
     struct lm_target t = point_at(46, 11, 3, 45);
     const struct lm_target_set set = {.items = &t, .count = 1}, none = {0};
     draw_patch(&none, before);
@@ -117,7 +107,7 @@ TEST(a_target_in_the_corner_of_a_coarse_patch_is_shown)
     enum { CELL_MM = 20000, OUT_CELLS = 110 };
     static uint8_t without[SIDE][SIDE], with[SIDE][SIDE];
     const struct lm_target_set none = {0};
-    open_soil();
+    tiny_map_open_soil(&map, SLOTS, &tone);
     draw_patch_of_cells(&none, CELL_MM, without);
     const double out_deg = OUT_CELLS * CELL_MM * 180 / (acos(-1) * 6371e3 * 1000);
     for (int corner = 0; corner < 4; corner++) {
@@ -140,7 +130,7 @@ TEST(a_mover_that_is_hidden_where_it_stands_shows_nowhere_in_a_patch)
 {
     static uint8_t without[SIDE][SIDE], with[SIDE][SIDE];
     const struct lm_target_set none = {0};
-    open_soil();
+    tiny_map_open_soil(&map, SLOTS, &tone);
     draw_patch(&none, without);
     for (int is_hidden = 0; is_hidden < 2; is_hidden++) {
         struct lm_target t = point_at(46, 11, is_hidden ? -3 : 3, 45);
@@ -199,7 +189,7 @@ static int changed_bins(int32_t with[SIDE][SIDE], int32_t without[SIDE][SIDE], i
 TEST(a_target_shows_in_one_bin_over_the_beam_and_a_hidden_one_nowhere)
 {
     static int32_t with[SIDE][SIDE], without[SIDE][SIDE];
-    open_soil();
+    tiny_map_open_soil(&map, SLOTS, &tone);
     const struct lm_target_set none = {0};
     sweep(&none, without);
     const struct lm_target shown = point_at(46, 11, 1, 60), hidden = point_at(46, 11, -100, 60);

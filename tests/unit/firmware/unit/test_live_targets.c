@@ -18,16 +18,6 @@ static struct lm_line line;
 static struct lm_tone tone;
 static struct lm_live live;
 
-/* Flat soil for 5 km around 46 N 11 E, all of it read. */
-static void open_soil(void)
-{
-    struct tiny_spec spec = tiny_spec_at(46, 11);
-    spec.shift0 = 12;
-    spec.rows = spec.columns = 4;
-    tiny_map_open(&map, &spec, SLOTS);
-    assert_int_equal(lm_tone_set(&tone, &lm_radar_default.sar.tone), LM_OK);
-}
-
 /* A mover of the image, steady, and the same one as a live target that was told 2 s before. */
 static struct lm_target image_mover(double latitude, double longitude, double heading_deg,
                                     double speed_m_s)
@@ -119,7 +109,7 @@ TEST(a_live_mover_is_drawn_as_a_mover_of_the_image_in_every_mode)
     static int32_t without[LINES_MAX][SIDE], image[LINES_MAX][SIDE], told[LINES_MAX][SIDE];
     static const double headings[] = {0, 90, 216.8698976};
     const struct lm_target_set none = {0}, live_set = {.live = &live};
-    open_soil();
+    tiny_map_open_soil(&map, SLOTS, &tone);
     for (size_t v = 0; v < sizeof views / sizeof *views; v++) {
         sweep(views[v], &none, without);
         for (size_t h = 0; h < sizeof headings / sizeof *headings; h++) {
@@ -147,7 +137,7 @@ TEST(doppler_displaces_a_live_mover_as_the_law_says)
     static int32_t still[LINES_MAX][SIDE], moving[LINES_MAX][SIDE];
     const struct lm_target_set live_set = {.live = &live};
     const struct view view = {LM_SECTOR_GM, LM_FOV_DBS1};
-    open_soil();
+    tiny_map_open_soil(&map, SLOTS, &tone);
     struct lm_target t = image_mover(46, 11, 215, 0);
     tell(&t, 3, 7 * S);
     const uint32_t lines = sweep(view, &live_set, still);
@@ -177,7 +167,7 @@ TEST(terrain_hides_a_live_target)
 {
     static int32_t with[LINES_MAX][SIDE], without[LINES_MAX][SIDE];
     const struct lm_target_set none = {0}, live_set = {.live = &live};
-    open_soil();
+    tiny_map_open_soil(&map, SLOTS, &tone);
     const struct lm_target t = image_mover(46, 11, 0, 0);
     for (size_t v = 0; v < sizeof views / sizeof *views; v++) {
         if (views[v].mode != LM_SECTOR_GMT) {
@@ -199,7 +189,7 @@ TEST(all_256_are_drawn)
 {
     static int32_t with[LINES_MAX][SIDE], without[LINES_MAX][SIDE];
     const struct lm_target_set none = {0}, live_set = {.live = &live};
-    open_soil();
+    tiny_map_open_soil(&map, SLOTS, &tone);
     for (size_t v = 0; v < sizeof views / sizeof *views; v++) {
         if (views[v].mode == LM_SECTOR_GMT) {
             continue;
@@ -306,7 +296,7 @@ TEST(strong_targets_are_not_lost_in_a_crowded_beam)
 {
     static int32_t all[LINES_MAX][SIDE], strong[LINES_MAX][SIDE], without[LINES_MAX][SIDE];
     const struct lm_target_set none = {0}, live_set = {.live = &live};
-    open_soil();
+    tiny_map_open_soil(&map, SLOTS, &tone);
     for (size_t v = 0; v < sizeof views / sizeof *views; v++) {
         sweep(views[v], &none, without);
         crowd_the_beam(45);
@@ -370,7 +360,7 @@ TEST(a_patch_displaces_and_smears_a_live_mover_as_one_of_the_image)
     static const double motions[][2] = {
         {0, 0}, {270, 1.5}, {0, 3}, {180 + 36.8698976, 2.5}, {90, 1}};
     const struct lm_target_set none = {0}, live_set = {.live = &live};
-    open_soil();
+    tiny_map_open_soil(&map, SLOTS, &tone);
     draw_patch(&none, without);
     for (size_t i = 0; i < sizeof motions / sizeof *motions; i++) {
         const struct lm_target t = image_mover(46, 11, motions[i][0], motions[i][1]);
