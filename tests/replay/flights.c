@@ -1,7 +1,8 @@
 /* Flights of random events: recorded by one build of the firmware, shown again by another.
  *
  *   flights image FILE                       the country that is flown over
- *   flights record IMAGE FOLDER FIRST COUNT  fly seeds FIRST.., into FOLDER/SEED.log and SEED.sums
+ *   flights record IMAGE FOLDER FIRST COUNT [SECONDS]
+ *                                            fly seeds FIRST.., into FOLDER/SEED.log and SEED.sums
  *   flights replay IMAGE FOLDER FIRST COUNT  fly the logs again; every picture's checksum must be
  *                                            that of SEED.sums
  *   flights lose   IMAGE FOLDER FIRST COUNT  the same with one step of each flight, in which
@@ -25,7 +26,7 @@
 #include <string.h>
 
 enum { LOST_STEP = 1500 };
-enum { FLIGHT_US = 6000000, SIDE_PX = 288, TILES = 130, POLLS = 60, BUFFERS = LM_AGES + 1 };
+enum { FLIGHT_S = 6, SIDE_PX = 288, TILES = 130, POLLS = 60, BUFFERS = LM_AGES + 1 };
 
 struct flight {
     struct hs_rng rng;
@@ -39,7 +40,7 @@ struct flight {
     uint64_t pool[TILES * sizeof(struct lm_tile) / 8];
     uint8_t plane[SIDE_PX * SIDE_PX];
     uint32_t buffer[BUFFERS][SIDE_PX * SIDE_PX];
-    uint64_t now_us;
+    uint64_t now_us, end_us;
     struct {
         uint64_t sent_us, silent_until_us, down_until_us;
         int next;
@@ -397,7 +398,7 @@ static bool record_flight(struct flight *f, const char *folder, uint64_t seed)
     record_begin(&recorder, &sink, &f->board, 1700000000000000, 7);
     recorder.flash = &f->port;
     bool is_whole = lm_unit_init(&f->unit, &f->board) == LM_OK;
-    for (; is_whole && f->now_us < FLIGHT_US; f->now_us += pause_us(f)) {
+    for (; is_whole && f->now_us < f->end_us; f->now_us += pause_us(f)) {
         upset_bus(f);
         record_step(&recorder, f->now_us);
         lm_unit_step(&f->unit, f->now_us);
@@ -492,10 +493,10 @@ int main(int argc, char **argv)
     if (argc == 3 && strcmp(argv[1], "image") == 0) {
         return write_image(argv[2]) == 0 ? 0 : 1;
     }
-    if (argc != 6) {
+    if (argc != 6 && argc != 7) {
         fprintf(stderr,
                 "usage: flights image FILE\n"
-                "       flights record|replay|lose IMAGE FOLDER FIRST COUNT\n");
+                "       flights record|replay|lose IMAGE FOLDER FIRST COUNT [SECONDS]\n");
         return 2;
     }
     size_t size;
@@ -508,6 +509,7 @@ int main(int argc, char **argv)
             return 1;
         }
         open_board(f, image, size);
+        f->end_us = 1000000 * (argc == 7 ? strtoull(argv[6], NULL, 10) : FLIGHT_S);
         good += strcmp(argv[1], "record") == 0
                     ? record_flight(f, argv[3], seed)
                     : replay_flight(f, argv[3], seed, strcmp(argv[1], "lose") == 0);

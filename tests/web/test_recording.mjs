@@ -6,7 +6,7 @@ import {execFileSync} from 'node:child_process';
 import fs from 'node:fs';
 import {test} from 'node:test';
 
-import {FeedLines, LogLines, Moments, Replay, spanOf} from '../../bsp/web/page/recording.mjs';
+import {FeedLines, joined, LogLines, Moments, Replay, spanOf} from '../../bsp/web/page/recording.mjs';
 
 const build = process.env.BUILD ?? 'build/bench-linux', tmp = `${build}/tmp/web/recording`;
 const program = (name, ...words) => execFileSync(`${build}/bin/${name}`, words, {encoding: 'utf8'});
@@ -75,6 +75,14 @@ test('a recording that grows shows the same, whatever pieces it comes in, and wa
     assert.ok(waits > 10);
     assert.equal(replay.problem(), '');
     assert.equal(replay.value('hasEnded'), 1);
+});
+
+test('a recording in parts is one', async () => {
+    const text = textOf(5), bytes = new Uint8Array(Buffer.from(text, 'latin1')), cuts = [0, 7, 65536, 65600, 100000, bytes.length];
+    const parts = cuts.slice(1).map((end, n) => bytesSource(`${n}`, bytes.subarray(cuts[n], end)));
+    const whole = joined(parts);
+    assert.deepEqual(whole.read(3, 70000), bytes.subarray(3, 70003));
+    assert.deepEqual(fly(await opened(new LogLines(whole))), sumsOf(5));
 });
 
 test('back and on again by moments, within their memory, the pictures are the same', async () => {

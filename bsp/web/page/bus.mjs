@@ -60,10 +60,10 @@ export class LogBus {
  * its arrival, as on a bus. What comes faster than a step takes it is dropped by the unit, which
  * counts it; lines that are no frame are counted here. */
 export class SocketBus {
-    constructor(url, onState) {
+    constructor(url, onState, protocol = []) {
         this.refused = 0;
         this.waiting = [];
-        this.socket = new WebSocket(url);
+        this.socket = new WebSocket(url, protocol);
         this.socket.onopen = () => onState('connected');
         this.socket.onclose = () => onState('closed');
         this.socket.onmessage = ({data}) => this.take(data);

@@ -52,6 +52,22 @@ export function waitingFileSource(file) {
     return {name: file.name, size: file.size, read};
 }
 
+/* Parts of a recording, one after the other, as one source. */
+export function joined(parts) {
+    const begins = parts.reduce((all, part) => [...all, all.at(-1) + part.size], [0]);
+    const read = (offset, length) => {
+        const bytes = new Uint8Array(length);
+        for (let done = 0; done < length;) {
+            const n = begins.findLastIndex((begin, i) => i < parts.length && begin <= offset + done);
+            const at = offset + done - begins[n], most = Math.min(length - done, parts[n].size - at);
+            bytes.set(parts[n].read(at, most), done);
+            done += most;
+        }
+        return bytes;
+    };
+    return parts.length === 1 ? parts[0] : {name: parts[0].name, size: begins.at(-1), read};
+}
+
 /* Blocks of a source, the last ones kept. */
 class Blocks {
     constructor(source, kept) {
@@ -126,6 +142,8 @@ export class FeedLines {
         this.at = 0;
         this.steps = 0; // lines of steps that wait
         this.isOver = false;
+        this.zeroUs = NaN; // time of the log at which the unit's clock is 0
+        this.lastUs = 0;   // the same at which the last line of steps begins that came
     }
 
     put(text) {
@@ -133,21 +151,11 @@ export class FeedLines {
         this.rest = lines.pop().slice(0, LINE_MOST + 1);
         this.lines = this.lines.slice(this.at).concat(lines);
         this.at = 0;
-        for (const line of lines) {
-            this.steps += IS_STEPS.test(line) ? 1 : 0;
-            this.isOver ||= IS_END.test(line);
-        }
-    }
-
-    /* Microseconds of the log at which the last line of steps begins that came; 0: none did. */
-    get lastUs() {
-        for (let n = this.lines.length - 1; n >= this.at; n--) {
-            if (IS_STEPS.test(this.lines[n])) {
-                this.seenUs = timeOf(this.lines[n]);
-                break;
-            }
-        }
-        return this.seenUs ?? 0;
+        this.zeroUs = Number.isNaN(this.zeroUs) && lines.length > 0 ? timeOf(lines[0]) : this.zeroUs;
+        const steps = lines.filter((line) => IS_STEPS.test(line));
+        this.steps += steps.length;
+        this.lastUs = steps.length > 0 ? timeOf(steps.at(-1)) : this.lastUs;
+        this.isOver ||= lines.some((line) => IS_END.test(line));
     }
 
     /* What happened in a step is whole when the next line of steps is there. `left`: steps that are
