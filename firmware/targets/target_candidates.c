@@ -166,6 +166,22 @@ static uint32_t strength_of(const struct lm_live_target *t)
     return (uint32_t)(fx_clamp_i32(t->rcs_dbsm_q8, LM_DB_Q8(-100), LM_DB_Q8(100)) / 256 + 100);
 }
 
+/* Strength from which on all those met have room, where more are met than that; *left becomes the
+ * room for some that are a step weaker. */
+static uint32_t least_strength(const struct lm_live_target *target, const struct met *met,
+                               uint32_t *left)
+{
+    uint32_t least = DB_STEPS;
+    uint16_t as_strong[DB_STEPS] = {0};
+    for (uint32_t i = 0; i < met->count; i++) {
+        as_strong[strength_of(&target[met->number[i]])]++;
+    }
+    while (as_strong[least - 1] <= *left) {
+        *left -= as_strong[--least];
+    }
+    return least;
+}
+
 /* Add those met as far as there is room: the strongest, and of equally strong ones the lowest
  * numbers. In one beam strength is what decides between them: the width of its cells grows with the
  * range as their grazing falls. */
@@ -173,14 +189,8 @@ static void add_met(struct lm_target_candidates *candidates, const struct met *m
                     const struct lm_target_query *query)
 {
     const struct lm_live_target *target = candidates->set.live->target;
-    uint32_t left = LM_TARGET_CANDIDATES_MAX - candidates->count, least = DB_STEPS;
-    uint16_t as_strong[DB_STEPS] = {0};
-    for (uint32_t i = 0; i < met->count; i++) {
-        as_strong[strength_of(&target[met->number[i]])]++;
-    }
-    while (least > 0 && as_strong[least - 1] <= left) {
-        left -= as_strong[--least];
-    }
+    uint32_t left = LM_TARGET_CANDIDATES_MAX - candidates->count;
+    const uint32_t least = met->count > left ? least_strength(target, met, &left) : 0;
     for (uint32_t i = 0; i < met->count; i++) {
         const uint32_t strength = strength_of(&target[met->number[i]]);
         const bool is_last = strength + 1 == least && left > 0;

@@ -107,6 +107,7 @@ fi
 
 if [ -x "$build/bin/landmass-dis" ]; then
     python3 -B "$here/dis.py" "$build/bin/landmass-dis"
+    "$build/bin/tests/bench/dis_glass" 300
     echo
 fi
 

@@ -94,8 +94,8 @@ void lm_target_candidates_select(struct lm_target_candidates *candidates,
 
 /* Add the live targets within the query's reach: as far as there is room those with the greatest
  * cross section, in whole dB, and of equal ones the lowest numbers. The others are counted in
- * left_out. Cost: 2,000 instructions, 80 for each that is there, and about 1,500 for each that is
- * added. */
+ * left_out. Cost: 80 instructions for each that is there, about 1,500 for each that is added, and
+ * 3,000 where there are more. */
 void lm_target_candidates_add_live(struct lm_target_candidates *candidates,
                                    const struct lm_target_query *query);
 
@@ -110,8 +110,8 @@ struct lm_live_line {
 
 /* Select the live targets that the line may show: those that appear within its width, by a plane
  * around the antenna. The query's position is the antenna's now; its time is that of the sweep.
- * Of more than LM_TARGET_CANDIDATES_MAX the strongest, as above. Cost: 2,000 instructions, 90 for
- * each live target, and about 1,500 for each selected. */
+ * Of more than LM_TARGET_CANDIDATES_MAX the strongest, as above. Cost: 90 instructions for each
+ * live target, about 1,500 for each selected, and 3,000 where there are more. */
 void lm_target_candidates_of_line(struct lm_target_candidates *candidates,
                                   const struct lm_target_set *set,
                                   const struct lm_target_query *query,

@@ -361,6 +361,35 @@ def cigi_that_is_none_is_refused_and_counted(work):
                                         "id": 0}, refused
 
 
+def an_interface_of_socketcan_gets_what_a_log_gets(work):
+    """vcan0, or one that this run may make."""
+    name = "vcan0"
+    made = False
+    if not os.path.exists("/sys/class/net/" + name) and shutil.which("ip"):
+        made = subprocess.run(["ip", "link", "add", "dev", name, "type", "vcan"], capture_output=True).returncode == 0
+    try:
+        if not os.path.exists("/sys/class/net/" + name) or (
+                made and subprocess.run(["ip", "link", "set", "up", name], capture_output=True).returncode != 0):
+            raise Skip("no vcan0 here, and none can be made")
+        path = os.path.join(work, "two.pcap")
+        write_capture(path, [(1000, state(1, geocentric(47, 8, 500))), (1000.4, state(2, geocentric(47, 9, 500)))])
+        with socket.socket(socket.AF_CAN, socket.SOCK_RAW, socket.CAN_RAW) as ear:
+            ear.bind((name,))
+            ear.settimeout(0.5)
+            figures, _ = report("--capture", path, "--can", name)
+            heard = []
+            while len(heard) < figures["frames"]:
+                word, length, data = struct.unpack("=IB3x8s", ear.recv(16))
+                heard.append((word & 0x1fffffff, data[:length]))
+        assert figures["frames_lost"] == 0, figures
+        _, told = report("--capture", path)
+        assert sorted(name for name, _ in heard) == sorted(name for _, name, _ in told)
+        assert {data[4:] for _, name, data in told if name == 1811} == {data[4:] for name, data in heard if name == 1811}
+    finally:
+        if made:
+            subprocess.run(["ip", "link", "del", "dev", name], capture_output=True)
+
+
 def mistakes_are_told_with_their_place(work):
     for words, code, said in (
             (["--capture", os.path.join(work, "nosuch")], 1, "nosuch: cannot be opened"),
@@ -402,7 +431,7 @@ CASES = [a_capture_becomes_targets_where_its_entities_are, tshark_reads_the_same
          a_recorded_drive_is_never_further_off_than_the_threshold, single_pdus_of_simulators_are_read_or_passed_over,
          what_comes_to_the_port_is_told_and_an_interrupt_removes_it, open_dis_sends_and_its_ships_are_where_it_says,
          a_cigi_host_tells_of_entities_where_tshark_sees_them, a_cigi_entity_moves_stops_and_goes,
-         cigi_that_is_none_is_refused_and_counted, mistakes_are_told_with_their_place, a_table_of_the_users_decides]
+         cigi_that_is_none_is_refused_and_counted, an_interface_of_socketcan_gets_what_a_log_gets, mistakes_are_told_with_their_place, a_table_of_the_users_decides]
 
 
 def main():
