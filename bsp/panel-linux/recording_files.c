@@ -260,7 +260,9 @@ int recording_files_open(struct recording_files *f, const char *folder,
     f->limits = *limits;
     f->ring = ring;
     f->session = NO_SESSION;
-    if (mkdir(folder, 0750) != 0 && errno != EEXIST) {
+    if (mkdir(folder, 0750) == 0) {
+        (void)chmod(folder, 0750); /* whatever the mask of the process */
+    } else if (errno != EEXIST) {
         return errno;
     }
     f->folder_fd = open(folder, O_RDONLY | O_DIRECTORY | O_CLOEXEC);

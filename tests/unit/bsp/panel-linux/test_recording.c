@@ -160,6 +160,7 @@ TEST(the_link_names_the_part_that_grows)
 {
     struct flight *f = prepare("link");
     char path[200], name[100] = {0}, part[64];
+    const mode_t before = umask(0077); /* as the service has it */
     take_off(f, &small);
     fly_about(f);
     wait_for_thread(f);
@@ -171,6 +172,9 @@ TEST(the_link_names_the_part_that_grows)
     struct stat about;
     assert_int_equal(stat(path, &about), 0);
     assert_int_equal(about.st_mode & 07777, 0640); /* the panel's group may read it */
+    assert_int_equal(stat(f->folder, &about), 0);
+    assert_int_equal(about.st_mode & 07777, 0750);
+    umask(before);
     land(f);
 }
 
