@@ -340,17 +340,40 @@ static bool are_one_frame(const struct lm_bus_row *a, const struct lm_bus_row *b
     return a->id == b->id && a->packing.mask == b->packing.mask;
 }
 
-/* A .dbc file has no word for fast packets: they are left out. */
+/* Where a number of a fast packet lies among its frames: frame 0 has six bytes of the message
+ * behind two of its own, the others seven behind one. */
+struct fast_place {
+    unsigned frame, last_frame;
+    struct lm_bus_bits bits; /* in its frame, if that is the last as well */
+};
+
+static unsigned fast_frame_of(unsigned byte)
+{
+    return byte < 6 ? 0 : (byte - 6) / 7 + 1;
+}
+
+static struct fast_place fast_place_of(const struct lm_bus_packing *p)
+{
+    const unsigned byte = p->bits.first / 8u, end = p->bits.first + p->bits.count - 1u;
+    struct fast_place place = {fast_frame_of(byte), fast_frame_of(end / 8), p->bits};
+    const unsigned at = place.frame == 0 ? byte + 2 : (byte - 6) % 7 + 1;
+    place.bits.first = (uint16_t)(at * 8 + p->bits.first % 8u);
+    return place;
+}
+
+/* A .dbc file knows no messages of several frames: a number that lies in two of them is left out.
+ */
 static bool is_in_dbc(const struct lm_bus_profile *profile, int index)
 {
-    return profile->framing != LM_BUS_PACKED || !profile->rows[index].packing.is_fast;
+    if (profile->framing != LM_BUS_PACKED || !profile->rows[index].packing.is_fast) {
+        return true;
+    }
+    const struct fast_place place = fast_place_of(&profile->rows[index].packing);
+    return place.frame == place.last_frame;
 }
 
 static bool is_first_of_frame(const struct lm_bus_profile *profile, int index)
 {
-    if (!is_in_dbc(profile, index)) {
-        return false;
-    }
     for (int i = 0; i < index; i++) {
         if (are_one_frame(&profile->rows[i], &profile->rows[index])) {
             return false;
@@ -388,6 +411,26 @@ static void print_packed_signal(FILE *out, const struct lm_bus_row *row, int ind
             row->high, unit_of(row)->bus_unit);
 }
 
+/* The frames of a fast packet: the number of the frame decides which bytes of the message it has.
+ */
+static void print_fast_signals(FILE *out, const struct lm_bus_profile *profile, int index)
+{
+    fprintf(out,
+            " SG_ sequence : 5|3@1+ (1,0) [0|7] \"\" Vector__XXX\n"
+            " SG_ frame M : 0|5@1+ (1,0) [0|31] \"\" Vector__XXX\n"
+            " SG_ message_bytes m0 : 8|8@1+ (1,0) [0|223] \"\" Vector__XXX\n");
+    for (int i = index; i < profile->row_count; i++) {
+        struct lm_bus_row row = profile->rows[i];
+        if (are_one_frame(&row, &profile->rows[index]) && is_in_dbc(profile, i)) {
+            const struct fast_place place = fast_place_of(&row.packing);
+            row.packing.bits = place.bits;
+            row.packing.match = (struct lm_bus_bits){0, 5};
+            row.packing.match_value = (uint8_t)place.frame;
+            print_packed_signal(out, &row, i, row.packing.match);
+        }
+    }
+}
+
 static void print_packed_message(FILE *out, const struct lm_bus_profile *profile, int index)
 {
     const struct lm_bus_row *first = &profile->rows[index];
@@ -395,6 +438,10 @@ static void print_packed_message(FILE *out, const struct lm_bus_profile *profile
     fprintf(out, "\nBO_ %u ", first->id | CAN_EFF_FLAG);
     print_name(out, first->name, index);
     fprintf(out, ": 8 Vector__XXX\n");
+    if (first->packing.is_fast) {
+        print_fast_signals(out, profile, index);
+        return;
+    }
     if (m.count != 0) {
         fprintf(out, " SG_ when M : %u|%u@%d+ (1,0) [0|%u] \"\" Vector__XXX\n",
                 dbc_start(m, first->packing.is_little_endian), m.count,
@@ -436,6 +483,9 @@ static void print_remarks(FILE *out, const struct lm_bus_profile *profile, int i
                 row->dead_ms);
         return;
     }
+    if (!is_in_dbc(profile, index)) {
+        return;
+    }
     fprintf(out, "CM_ SG_ %u ", id);
     print_name(out, row->name, index);
     fprintf(out, " \"field %s, priority %u, stale %u ms, dead %u ms, identifier mask %08X",
@@ -445,6 +495,30 @@ static void print_remarks(FILE *out, const struct lm_bus_profile *profile, int i
                 p->match_value);
     }
     fprintf(out, "\";\n");
+}
+
+/* The numbers of a fast packet that lie in two frames, in one remark of the message. */
+static void print_split(FILE *out, const struct lm_bus_profile *profile, int index)
+{
+    const char *before = "";
+    for (int i = index; i < profile->row_count; i++) {
+        const struct lm_bus_row *row = &profile->rows[i];
+        if (!are_one_frame(row, &profile->rows[index]) || is_in_dbc(profile, i)) {
+            continue;
+        }
+        const struct fast_place place = fast_place_of(&row->packing);
+        if (*before == '\0') {
+            fprintf(out, "CM_ BO_ %u \"", dbc_id(profile, row));
+        }
+        fprintf(out, "%s%s: bits %u to %u of the message, in its frames %u to %u", before,
+                row->name, row->packing.bits.first,
+                row->packing.bits.first + row->packing.bits.count - 1u, place.frame,
+                place.last_frame);
+        before = "; ";
+    }
+    if (*before != '\0') {
+        fprintf(out, "\";\n");
+    }
 }
 
 static void print_values(FILE *out, const struct lm_bus_row *row)
@@ -474,8 +548,9 @@ void bus_print_dbc(FILE *out, const struct lm_bus_profile *profile)
     }
     fprintf(out, "\n");
     for (int i = 0; i < profile->row_count; i++) {
-        if (is_in_dbc(profile, i)) {
-            print_remarks(out, profile, i);
+        print_remarks(out, profile, i);
+        if (is_packed && is_first_of_frame(profile, i)) {
+            print_split(out, profile, i);
         }
     }
     fprintf(out,

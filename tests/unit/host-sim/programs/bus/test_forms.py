@@ -211,7 +211,6 @@ def the_filters_are_those_of_the_messages():
         messages = {i for i, m in read_dbc(bus("dbc", *profile)).items() if not m.is_sent}
         filters = [line.split(":") for line in bus("filters", *profile).split()]
         heard = {int(i, 16) | (EXTENDED if len(i) == 8 else 0) for i, _ in filters}
-        heard -= {int(row["id"]) | EXTENDED for row in table_rows(profile) if is_fast(row)}
         assert messages <= heard, messages - heard
         redundant = {i | EXTENDED for i in messages if not i & EXTENDED}
         assert heard <= messages | redundant, heard - messages - redundant
@@ -225,8 +224,50 @@ def table_rows(profile):
 
 
 def is_fast(row):
-    """Whether it comes in fast packets, which a .dbc cannot describe; test_nmea2000 judges those."""
+    """Whether it comes in fast packets, of which a .dbc has frames alone; test_nmea2000 judges the messages."""
     return "fast" in row.get("bits", "")
+
+
+FAST_TABLE = """profile fast
+framing packed
+channel-mask 0x000000FF
+item "in frame 0" field=true-track id=0x01F80500 mask=0x03FFFF00 endian=little packet=fast \\
+     bits=16+16 scale=0.005 unit=deg range=0..360 period=100 stale=300 dead=2000
+item "in frame 1" field=pitch id=0x01F80500 mask=0x03FFFF00 endian=little packet=fast \\
+     bits=64+16 type=signed scale=0.002 unit=deg range=-90..90 period=100 stale=300 dead=2000
+item "in frame 3, from its first byte on" field=roll id=0x01F80500 mask=0x03FFFF00 endian=big packet=fast \\
+     bits=160+32 type=signed scale=1e-7 unit=deg range=-180..180 period=100 stale=300 dead=2000
+item "in frames 1 and 2" field=latitude id=0x01F80500 mask=0x03FFFF00 endian=little packet=fast \\
+     bits=88+32 type=signed scale=1e-7 unit=deg range=-90..90 period=100 stale=300 dead=2000
+"""
+
+
+def frames_of_fast_packets_are_read_as_their_messages():
+    """Of each number that lies in one frame, the .dbc says of that frame what the decoder says of the message."""
+    dice, seen = random.Random(2000), 0
+    with tempfile.TemporaryDirectory() as folder:
+        table = os.path.join(folder, "fast.bus")
+        with open(table, "w") as file:
+            file.write(FAST_TABLE)
+        (message,) = read_dbc(bus("dbc", "--table", table)).values()
+        names = {s.name: s.mux for s in message.signals}
+        assert {"sequence": None, "frame": "M", "message_bytes": "m0"}.items() <= names.items() and len(names) == 6, names
+        assert sorted(m for m in names.values() if m) == ["M", "m0", "m0", "m1", "m3"], names
+        assert "in frames 1 and 2: bits 88 to 119 of the message, in its frames 1 to 2" in bus("dbc", "--table", table)
+        for turn in range(40):
+            data = bytes(dice.randrange(256) for _ in range(43))
+            parts = [data[:6]] + [data[i:i + 7] for i in range(6, 43, 7)]
+            frames = [bytes([turn % 8 << 5 | i]) + (bytes([43]) if i == 0 else b"") + part for i, part in enumerate(parts)]
+            text = bus("decode", "--table", table, "-", text="".join(
+                log_line(1 + 0.001 * i, 0x01F80517 | EXTENDED, frame) for i, frame in enumerate(frames)))
+            for field, name in (("true-track", "in_frame_0"), ("pitch", "in_frame_1"), ("roll", "in_frame_3")):
+                signal = next(s for s in message.signals if s.name.startswith(name))
+                value = signal.value(frames[int(signal.mux[1:])])
+                if signal.low <= value <= signal.high:
+                    (found,) = field_values(text, field)
+                    assert abs((found - value + 180) % 360 - 180) < 1e-4 * max(1, abs(value)), (name, value, found)
+                    seen += 1
+    assert seen > 60, seen
 
 
 def field_values(text, field):
@@ -381,7 +422,7 @@ class Skip(Exception):
 
 CASES = [names_are_unlike_and_signals_do_not_overlap, the_dbc_reads_what_another_library_sent,
          cantools_reads_the_dbc_and_what_another_library_sent, the_filters_are_those_of_the_messages,
-         reports_are_decoded_to_what_the_dbc_says,
+         reports_are_decoded_to_what_the_dbc_says, frames_of_fast_packets_are_read_as_their_messages,
          numbers_of_a_text_table_are_decoded_as_the_dbc_describes_them, whole_seconds_are_cut_off_and_not_rounded,
          a_position_of_nmea_2000_is_read_and_all_ones_are_none, the_firmware_has_the_table_of_its_board,
          a_table_that_is_compiled_is_the_table_that_is_read,
