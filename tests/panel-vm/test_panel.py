@@ -1,7 +1,11 @@
 """The panel, with its package's files, on a machine with a bus, keys, a hand controller, a glass and a watchdog."""
 
+import os
+import re
+import subprocess
+
 from cases import case, expect, main
-from fixtures import busy_log, counters, database, lines_of, log, tree
+from fixtures import HOST, WORK, busy_log, counters, database, lines_of, log, tree
 from machine import Machine
 from panel import (GPIO, HEIGHT, PRESSED, RELEASED, Panel, bench, differences, fly, in_flight, is_fine, is_flagged,
                    is_removed, land, strangers)
@@ -105,6 +109,25 @@ def down_and_up(m):
     m.do("ip link set vcan0 up")
     fly(m)
     p.until(is_fine)
+
+
+@case("what it recorded is shown again by the bench, every check and every frame that it sent")
+def recorded(m):
+    p = in_flight(m, can__node=20, can__reports="on", record="/tmp/recordings")
+    p.press("OSB7")
+    p.press("OSB12")
+    m.sleep(3)
+    counted = p.report("recording")
+    p.stop()
+    land(m)
+    path = os.path.join(WORK, "recorded.log")
+    with open(path, "w", encoding="ascii") as out:
+        out.write(m.do("cat /tmp/recordings/flight-00001-000.log") + "\n")
+    again = subprocess.run([os.path.join(HOST, "landmass-sim"), "--db", database("small"), "--replay", path],
+                           capture_output=True, text=True, check=False)
+    expect(again.returncode == 0 and " failed 0; departures 0\n" in again.stdout, again.stdout, again.stderr)
+    checks = int(re.search(r"checks of the glass (\d+)", again.stdout).group(1))
+    expect(checks >= 3 and counted["lines"] == 0, again.stdout, counted)
 
 
 @case("as a node that tells reports, it puts the cursor on the bus ten times a second, and a place when there is one")
