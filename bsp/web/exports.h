@@ -99,7 +99,9 @@ enum web_value {
     WEB_CHECKS,
     WEB_CHECKS_FAILED,
     WEB_READS_DIFFER,
-    WEB_HAS_ENDED
+    WEB_HAS_ENDED,
+    WEB_IS_OTHER_BUILD, /* recorded by another build of this firmware */
+    WEB_CEASED          /* enum record_reason: the recorder gave up at the end; or 0 */
 };
 
 /* A value, or -1 if there is none of that number. */

@@ -141,6 +141,10 @@ double web_replay_value(enum web_value which)
         return p->count.reads_differ;
     case WEB_HAS_ENDED:
         return p->has_ended;
+    case WEB_IS_OTHER_BUILD:
+        return replay_is_other_build(p);
+    case WEB_CEASED:
+        return p->ceased;
     default:
         return -1;
     }

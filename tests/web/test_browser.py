@@ -187,6 +187,29 @@ def a_log_flies_and_a_bad_one_is_refused(b):
     b.until("landmass.unit.flash.source.name === 'scene.lmdb' && landmass.unit.value('pictures') > 10")
 
 
+def a_recording_is_flown_again_and_one_of_another_image_is_refused(b):
+    country = SITE.parent / "scene.lmdb"
+    shutil.copy(SITE / "scene.lmdb", country)
+    subprocess.run([BUILD / "bin/landmass-sim", "--db", country, "--bus", SITE.parent / "bus.log", "--seconds", "4",
+                    "--quiet", "--record", SITE.parent / "flight.log"], check=True, stdout=subprocess.DEVNULL)
+    b.start()
+    b.find("log").send_keys(str((SITE.parent / "flight.log").resolve()))
+    b.until("landmass.player && document.getElementById('flight-state').textContent.includes('4 s: the end')")
+    assert b.find("message").text == "", b.find("message").text
+    lit = b.ask("landmass.context.getImageData(0, 0, 768, 768).data.filter((x, i) => i % 4 == 1 && x > 40).length")
+    assert lit > 5000, f"{lit} lit pixels"
+    b.find("by-hand").click()
+    pictures = value(b, "pictures")
+    b.until(f"landmass.player === null && landmass.unit.value('pictures') > {pictures} + 5")
+    subprocess.run([BUILD / "bin/tests/replay/flights", "image", SITE.parent / "other.lmdb"], check=True)
+    b.find("image").send_keys(str((SITE.parent / "other.lmdb").resolve()))
+    b.until("landmass.unit.flash.source.name === 'other.lmdb'")
+    shutil.copy(SITE.parent / "flight.log", SITE.parent / "again.log")
+    b.find("log").send_keys(str((SITE.parent / "again.log").resolve()))
+    b.until("document.getElementById('message').textContent.includes('again.log: the recording was made with another image')")
+    assert b.ask("landmass.player === null")
+
+
 def a_live_bus_flies(b):
     child, port = node(ROOT / "tests/web/socket.mjs", SITE.parent / "bus.log")
     try:
@@ -215,7 +238,8 @@ def a_missing_image_is_said(b):
 TESTS = [golden_pictures_are_those_of_the_pc, the_page_flies_and_asks_no_other_server,
          every_key_of_the_bezel_acts_by_mouse, pages_open_by_key_and_by_button,
          the_cursor_moves_and_designate_draws_a_patch, the_keyboard_alone_reaches_everything,
-         the_flight_turns_and_pauses_by_key, a_log_flies_and_a_bad_one_is_refused, a_live_bus_flies,
+         the_flight_turns_and_pauses_by_key, a_log_flies_and_a_bad_one_is_refused,
+         a_recording_is_flown_again_and_one_of_another_image_is_refused, a_live_bus_flies,
          a_missing_image_is_said]
 
 

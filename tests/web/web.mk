@@ -10,7 +10,7 @@ WEB_TESTS := $(addprefix $(O)/bin/tests/web/,test_module test_recording test_bro
 TESTS += $(WEB_TESTS)
 $(O)/bin/tests/web/test_module:  WEB_RUN := node --test-reporter=tap tests/web/test_module.mjs
 $(O)/bin/tests/web/test_recording: WEB_RUN := node --test-reporter=tap tests/web/test_recording.mjs
-$(O)/bin/tests/web/test_recording: $(O)/bin/tests/replay/flights
+$(O)/bin/tests/web/test_recording $(O)/bin/tests/web/test_browser: $(O)/bin/tests/replay/flights
 $(O)/bin/tests/web/test_browser: WEB_RUN := /usr/bin/python3 -B tests/web/test_browser.py
 $(WEB_TESTS): $(addprefix $(O)/bin/tests/zcu102/,golden_flash picture_checksum) $(addprefix $(O)/bin/landmass-,nav sim) | web-modules
 	@mkdir -p $(@D)

@@ -6,12 +6,15 @@ import {fileSource, httpSource} from './flash.mjs';
 import {Flight} from './flight.mjs';
 import {gamepadActs} from './gamepad.mjs';
 import {listen} from './keyboard.mjs';
+import {Player} from './player.mjs';
 import {Tour} from './tour.mjs';
 import {Unit} from './unit.mjs';
 
 const SIDE = 768, STEP_US = 4000, BEHIND_MOST_US = 100000, TAP_MS = 60;
 const FULL = 1000; // LM_FULL_DEFLECTION
 const START = {latitude: 42.045, longitude: -29.18, headingDeg: 90, heightM: 3000, speedMs: 180};
+
+const IS_RECORDING = /^\(\d+\.\d{6}\) unit 1F4C4D00#/; // docs/FORMATS.md, 2.8
 
 const find = (id) => document.getElementById(id);
 const wait = (ms) => new Promise((done) => setTimeout(done, ms));
@@ -25,7 +28,8 @@ class Page {
         this.knob = 0;
         this.byHand();
         this.connectControls();
-        await this.open(await httpSource('scene.lmdb'));
+        this.image = {url: new URL('scene.lmdb', document.baseURI).href};
+        await this.open(await httpSource(this.image.url));
         this.tour = new Tour(this, (text, hasBack) => {
             find('tour-text').textContent = text;
             find('tour-back').disabled = !hasBack;
@@ -50,6 +54,7 @@ class Page {
     }
 
     setBus(bus) {
+        this.endReplay();
         this.bus?.close?.();
         this.bus = bus;
         if (bus instanceof LogBus) {
@@ -64,6 +69,10 @@ class Page {
     /* Steps up to the time of this frame. What a hidden tab missed is left out. */
     frame(ms) {
         requestAnimationFrame((next) => this.frame(next));
+        if (this.player) {
+            this.begunMs = null; // this page's own flight stands still
+            return;
+        }
         const isPaused = find('pause').getAttribute('aria-pressed') === 'true';
         this.begunMs ??= ms - this.nowUs / 1000;
         if (isPaused || (ms - this.begunMs) * 1000 - this.nowUs > BEHIND_MOST_US) {
@@ -146,6 +155,7 @@ class Page {
     togglePause() {
         const isPaused = find('pause').getAttribute('aria-pressed') === 'true';
         find('pause').setAttribute('aria-pressed', String(!isPaused));
+        this.player?.play(isPaused ? 1 : 0);
     }
 
     connectControls() {
@@ -182,7 +192,12 @@ class Page {
         }
         try {
             if (isImage) {
+                this.endReplay();
                 await this.open(fileSource(file));
+                this.image = {file};
+            } else if (IS_RECORDING.test(await file.slice(0, 100).text())) {
+                this.replay(file);
+                return;
             } else {
                 this.setBus(new LogBus(await file.text()));
             }
@@ -190,6 +205,34 @@ class Page {
             this.say(refused ? `${file.name}: ${refused} lines that are no data frame were left out` : '');
         } catch (error) {
             this.say(`${file.name}: ${error.message}`);
+        }
+    }
+
+    /* A recording has its own bus, keys and clock: the unit that flew stands still meanwhile. */
+    replay(file) {
+        this.endReplay();
+        find('pause').setAttribute('aria-pressed', 'false');
+        this.say('');
+        this.player = new Player(find('glass'), {
+            onOpened: () => this.player.play(1),
+            onState: ({us, words, remark, problem, isOver}) => {
+                find('description').textContent = [words, remark].filter(Boolean).join('; ');
+                find('flight-state').textContent = `${file.name}, ${(us / 1e6).toFixed(0)} s${isOver ? ': the end' : ''}`;
+                this.say(problem ? `${file.name}: ${problem}` : '');
+            },
+            onError: (text) => {
+                this.endReplay();
+                this.say(`${file.name}: ${text}`);
+            },
+        });
+        this.player.open(this.moduleBytes, this.image, {file});
+    }
+
+    endReplay() {
+        this.player?.close();
+        this.player = null;
+        if (find('glass').width !== SIDE || find('glass').height !== SIDE) {
+            Object.assign(find('glass'), {width: SIDE, height: SIDE});
         }
     }
 

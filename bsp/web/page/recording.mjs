@@ -13,6 +13,8 @@ import {Unit} from './unit.mjs';
 const BLOCK = 65536, BLOCKS_KEPT = 256; // 16 MiB of an image
 const OK = 0, IO_ERROR = -1;            // lm/status.h
 const OVER = -1, TORN = -2, BAD = -3;   // enum of exports.h
+const CEASED = [, 'it is as long as it may be', 'lines came faster than they could be written', // enum record_reason
+    'it could not be written'];
 const LINE_MOST = 127;
 const LINE_FEED = 10;
 const IS_STEPS = / unit 1F4C4D01#/, IS_END = / unit 1F4C4D(0D|11)#/;
@@ -277,6 +279,14 @@ export class Replay extends Unit {
             : `not the flight recorded: departures ${departures}, checks of the glass failed ${checks}, reads that differ ${reads}`);
     }
 
+    /* What else there is to know of the recording; '' if nothing. */
+    remark() {
+        const why = CEASED[this.value('ceased')];
+        return [this.value('isOtherBuild') ? 'recorded by another build of this firmware' : '',
+            why ? `the recorder gave up here: ${why}` : '',
+            this.isOver && !why && !this.value('hasEnded') ? 'the recording has no end' : ''].filter(Boolean).join('; ');
+    }
+
     /* ---- moments: the state of module and log, to go back to ---- */
 
     /* Pages that are those of `before`, if given, are shared with it. */
@@ -299,7 +309,14 @@ export class Replay extends Unit {
     }
 }
 
-const isZero = (words) => words.every((word) => word === 0n);
+function isZero(words) {
+    for (let i = 0; i < words.length; i++) {
+        if (words[i] !== 0) {
+            return false;
+        }
+    }
+    return true;
+}
 
 function areSame(a, b) {
     for (let i = 0; i < a.length; i++) {
@@ -314,8 +331,8 @@ function areSame(a, b) {
 function copyPages(memory, before) {
     const pages = [];
     for (let at = 0; at < memory.length; at += BLOCK) {
-        const words = new BigUint64Array(memory.buffer, at, BLOCK / 8), old = before?.[pages.length];
-        const oldWords = old && new BigUint64Array(old.buffer);
+        const words = new Int32Array(memory.buffer, at, BLOCK / 4), old = before?.[pages.length];
+        const oldWords = old && new Int32Array(old.buffer);
         pages.push(oldWords && areSame(words, oldWords) ? old : isZero(words) ? null : memory.slice(at, at + BLOCK));
     }
     return pages;

@@ -38,7 +38,7 @@ function tell(isAlways) {
         return;
     }
     desk.toldMs = now;
-    const words = replay.widthPx ? {words: replay.describe(), problem: replay.problem()} : {};
+    const words = replay.widthPx ? {words: replay.describe(), problem: replay.problem(), remark: replay.remark()} : {};
     const seen = scout ? {scoutUs: scout.nowUs, isScouted: scout.isOver, marks: desk.marks.take(),
         momentsBytes: desk.moments.bytes, moments: desk.moments.all.length, apartUs: desk.moments.apartUs} : {};
     const live = feed ? {silentMs: now - feed.cameMs, behindUs: replay.widthPx ? Math.max(feed.lastUs - feed.zeroUs - replay.nowUs, 0) : 0,

@@ -14,7 +14,8 @@ const LINE_OVER = -1; // exports.h
 /* enum web_value, in its order. */
 const VALUES = ['pictures', 'flags', 'mode', 'fov', 'rangeNm', 'cursorLatitude', 'cursorLongitude',
     'isCursorPlaced', 'framesLost', 'actsLost', 'linesDropped', 'isRadarPage', 'isMapUsable', 'refused',
-    'widthPx', 'heightPx', 'steps', 'stepsRead', 'departures', 'checks', 'checksFailed', 'readsDiffer', 'hasEnded'];
+    'widthPx', 'heightPx', 'steps', 'stepsRead', 'departures', 'checks', 'checksFailed', 'readsDiffer', 'hasEnded',
+    'isOtherBuild', 'ceased'];
 const MODES = ['GM', 'GMT', 'SEA', 'SAR'], FOVS = ['NORM', 'EXP', 'DBS1', 'DBS2'];
 const DEGREES_OF_BAM = 360 / 2 ** 32;
 

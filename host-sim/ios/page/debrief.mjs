@@ -122,7 +122,7 @@ class Debrief {
         }
         this.lastState = state;
         this.add(state.marks ?? []);
-        find('words').textContent = state.words ?? '';
+        find('words').textContent = [state.words, state.remark].filter(Boolean).join('; ');
         if (state.problem) {
             this.say(`${this.name}: ${state.problem}`);
         }

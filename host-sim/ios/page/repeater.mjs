@@ -90,7 +90,7 @@ class Repeater {
     take(state) {
         this.heardMs = performance.now();
         this.state = {...this.state, ...state};
-        find('words').textContent = state.words ?? '';
+        find('words').textContent = [state.words, state.remark].filter(Boolean).join('; ');
         this.judge();
         if (state.isOver && !this.again) {
             this.later(); // the display may have begun another recording
