@@ -180,9 +180,6 @@ static int run(struct command *c, struct nav_track *t)
 {
     struct findings found = {0};
     struct nav_sent sent;
-    if (c->live_path && nav_live_read(&c->send.live, c->live_path) != 0) {
-        return -1;
-    }
     if (get_track(c, t, &found) != 0) {
         return -1;
     }
@@ -213,8 +210,10 @@ int main(int argc, char **argv)
     struct nav_track track = {0};
     if (nav_options_read(&c, argc, argv, &exit_code)) {
         const bool is_live = c.flightgear_port > 0 || c.xplane_port > 0;
-        exit_code =
-            (is_live ? nav_fly_simulator(&c) : run(&c, &track)) == 0 ? HS_EXIT_OK : HS_EXIT_FAILED;
+        const bool has_routes = !c.live_path || nav_live_read(&c.send.live, c.live_path) == 0;
+        exit_code = has_routes && (is_live ? nav_fly_simulator(&c) : run(&c, &track)) == 0
+                        ? HS_EXIT_OK
+                        : HS_EXIT_FAILED;
     }
     nav_track_free(&track);
     return hs_report_end(exit_code);

@@ -127,6 +127,24 @@ def hostile_neighbours_are_counted_and_do_no_harm():
     assert len(frames) > 200
 
 
+def targets_on_routes_are_told_beside_a_simulator():
+    with tempfile.TemporaryDirectory() as folder:
+        routes = os.path.join(folder, "drill.routes")
+        with open(routes, "w") as file:
+            file.write("target 5 3\n at 0 46.1 11\n speed 20 46.2 11\n")
+        nav = Nav("--flightgear", "--live-routes", routes)
+        begin = time.monotonic()
+        with sender() as s:
+            for seconds, text in recorded():
+                if seconds > 2.5:
+                    break
+                time.sleep(max(0, begin + seconds - time.monotonic()))
+                s.sendto(text, (HERE, nav.port))
+        _, frames, _ = nav.end()
+        told = [struct.unpack(">i", data[4:])[0] * 1e-7 for _, name, data in frames if name == 1810 and data[2] == 5]
+        assert len(told) >= 2 and all(46.1 <= degrees < 46.11 for degrees in told), told
+
+
 def xplane_is_asked_and_answers():
     with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as s:
         try:
@@ -173,6 +191,7 @@ def a_port_that_is_taken_is_refused():
 TESTS = [
     a_recorded_flight_of_flightgear_reaches_the_log,
     hostile_neighbours_are_counted_and_do_no_harm,
+    targets_on_routes_are_told_beside_a_simulator,
     xplane_is_asked_and_answers,
     a_run_without_a_usable_datagram_fails_and_says_what_to_do,
     a_port_that_is_taken_is_refused,
