@@ -28,7 +28,8 @@ class Glass:
         self.flown = {}
 
     def run(self, program, *words):
-        return subprocess.run([str(self.bin / program), *map(str, words)], check=True, capture_output=True, text=True).stdout
+        return subprocess.run([str(self.bin / program), *map(str, words)], check=True, capture_output=True,
+            text=True).stdout
 
     def log_of(self, told):
         """Navigation with the told frames between: lists of ID#DATA, 0.3 s from one list to the next."""
@@ -44,15 +45,19 @@ class Glass:
             log, script, words = (self.folder / name for name in ("flight.log", "keys.script", "told.log"))
             log.write_text(self.log_of(told))
             script.write_text(f"{LOOKS_S} picture glass\n")
-            report = json.loads(self.run("landmass-sim", "--db", self.scene, "--bus", log, "--png", self.folder, "--every", 0, "--script", script,
-                                         "--node", DISPLAY_NODE, "--reports", "--obey-controls", "--bus-out", words, "--json", "-"))
+            report = json.loads(self.run("landmass-sim", "--db", self.scene, "--bus", log, "--png", self.folder,
+                "--every", 0, "--script", script,
+                                         "--node", DISPLAY_NODE, "--reports", "--obey-controls", "--bus-out", words,
+                                          "--json", "-"))
             picture = gdal.Open(str(self.folder / "glass.png")).ReadAsArray().astype(int)
             said = {}
             for line in self.run("landmass-bus", "decode", words).splitlines():
                 found = re.match(r"\s*[\d.]+\s+([0-9A-F]{3}) .*?(BLONG|LONG|UCHAR\d?|CHAR|NODATA) ?([-\dA-F ]*)", line)
                 if found:
-                    said[int(found[1], 16)] = [int(number, 16 if found[2] == "BLONG" else 10) for number in found[3].split()]
-            self.flown[key] = {"picture": picture.max(axis=0) if picture.ndim == 3 else picture, "report": report["report"], "said": said}
+                    said[int(found[1], 16)] = [int(number, 16 if found[2] == "BLONG" else 10)
+                        for number in found[3].split()]
+            self.flown[key] = {"picture": picture.max(axis=0) if picture.ndim == 3 else picture,
+                "report": report["report"], "said": said}
         return self.flown[key]
 
     def changed(self, flight, than=(), least=24):

@@ -47,7 +47,8 @@ function takeFrames(bytes, each) {
         if (bytes.length < at + 4 + size) {
             return bytes;
         }
-        const mask = bytes.subarray(at, at + 4), body = Buffer.from(bytes.subarray(at + 4, at + 4 + size)).map((b, i) => b ^ mask[i & 3]);
+        const mask = bytes.subarray(at, at + 4), body = Buffer.from(bytes.subarray(at + 4, at + 4 + size)).map((b, i) =>
+            b ^ mask[i & 3]);
         each(bytes[0] & 15, body.toString());
         bytes = bytes.subarray(at + 4 + size);
     }
@@ -76,7 +77,8 @@ const begin = Date.now(), first = parseFloat(lines[0][0].slice(1));
 let next = 0;
 setInterval(() => {
     const due = [];
-    for (const seconds = (Date.now() - begin) / 1000; next < lines.length && parseFloat(lines[next][0].slice(1)) - first <= seconds; next++) {
+    for (const seconds = (Date.now() - begin) / 1000; next < lines.length
+        && parseFloat(lines[next][0].slice(1)) - first <= seconds; next++) {
         due.push(lines[next][2]);
     }
     if (due.length > 0 && !isSilent) {

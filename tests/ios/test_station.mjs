@@ -13,7 +13,8 @@ import {pathToFileURL} from 'node:url';
 const build = process.env.BUILD ?? 'build/bench-linux', tmp = `${build}/tmp/ios`;
 const site = (name) => import(pathToFileURL(path.resolve(build, 'ios', name)));
 const program = (name, ...words) => execFileSync(`${build}/bin/${name}`, words, {encoding: 'utf8', maxBuffer: 1 << 26});
-const F = await site('frames.mjs'), {ahead, between, clockOf, clockWords} = await site('geo.mjs'), {Target} = await site('targets.mjs');
+const F = await site('frames.mjs'), {ahead, between, clockOf, clockWords} = await site('geo.mjs'),
+    {Target} = await site('targets.mjs');
 const {World} = await site('world.mjs'), {Keeper} = await site('keeper.mjs'), {Commands} = await site('commands.mjs');
 const {parseLine} = await site('web/bus.mjs'), {squareOf, placeOf} = await site('map.mjs');
 
@@ -22,7 +23,8 @@ fs.mkdirSync(tmp, {recursive: true});
 /* What `landmass-bus decode` says of lines. */
 function decode(lines) {
     const file = `${tmp}/lines.log`;
-    fs.writeFileSync(file, `${lines.map((line, i) => line.replace('(0.000000)', `(1.${String(i * 200).padStart(6, '0')})`)).join('\n')}\n`);
+    fs.writeFileSync(file,
+        lines.map((line, i) => `${line.replace('(0.000000)', `(1.${String(i * 200).padStart(6, '0')})`)}\n`).join(''));
     return program('landmass-bus', 'decode', file);
 }
 
@@ -35,10 +37,13 @@ const factsOf = (lines) => {
 /* ---- frames ---- */
 
 test('a live target is what landmass-bus reads of it', () => {
-    const target = {kind: 13, latitude: 46.1234567, longitude: -11.7654321, speedMs: 12.5, courseDeg: 216.87, heightM: 250, rcsDbsm: 31, signature: 2};
+    const target = {kind: 13, latitude: 46.1234567, longitude: -11.7654321, speedMs: 12.5, courseDeg: 216.87,
+        heightM: 250, rcsDbsm: 31, signature: 2};
     const told = decode(F.linesOf(F.targetFrames(200, target), 31, 7));
-    for (const words of ['kind 13, reckoning 2, signature 2, parts 15 (number 200, set 7)', 'live-latitude 46.1234567 deg',
-        'live-longitude -11.7654321 deg', 'live-height 250.000 m', 'east -7.5 m/s, north -10 m/s', 'node 31 service 200 code 7 FLOAT 31']) {
+    for (const words of ['kind 13, reckoning 2, signature 2, parts 15 (number 200, set 7)',
+        'live-latitude 46.1234567 deg',
+        'live-longitude -11.7654321 deg', 'live-height 250.000 m', 'east -7.5 m/s, north -10 m/s',
+            'node 31 service 200 code 7 FLOAT 31']) {
         assert.ok(told.includes(words), `${words}\n${told}`);
     }
     assert.ok(!/refused|not used/.test(told), told);
@@ -47,12 +52,17 @@ test('a live target is what landmass-bus reads of it', () => {
 test('every frame of the page is taken by landmass-bus as it was meant', () => {
     const place = {latitude: -45.5, longitude: 170.25};
     const expected = [
-        [F.rainFrames(3, {...place, radiusM: 4000, rateMmH: 30}), 'rain-latitude -45.5', 'rain-longitude 170.25', 'rain-radius 4000.000 m', 'rain-rate 30.000 mm/h'],
-        [F.jammerFrames(1, {...place, ratioDb: -12.5}), 'jammer-latitude -45.5', 'jammer-longitude 170.25', 'jammer-ratio -12.500 dB'],
-        [F.seaFrames(6), 'sea-state 6'], [F.windFrames(270), 'wind-direction -90'], [F.clearWeatherFrames(255), 'weather-clear 255'],
+        [F.rainFrames(3, {...place, radiusM: 4000, rateMmH: 30}), 'rain-latitude -45.5', 'rain-longitude 170.25',
+            'rain-radius 4000.000 m', 'rain-rate 30.000 mm/h'],
+        [F.jammerFrames(1, {...place, ratioDb: -12.5}), 'jammer-latitude -45.5', 'jammer-longitude 170.25',
+            'jammer-ratio -12.500 dB'],
+        [F.seaFrames(6), 'sea-state 6'], [F.windFrames(270), 'wind-direction -90'],
+            [F.clearWeatherFrames(255), 'weather-clear 255'],
         [F.removeTargetFrames(9), 'live-remove'], [F.clearTargetsFrames(), 'live-clear'],
-        [F.clockFrames({timeMs: 3600003, rate: 0.5, seed: 7}), 'exercise-seed 7.000', 'exercise-rate 0.500 x', 'exercise-time 3600003.000 ms'],
-        [F.malfunctionFrames(3, -15), 'service 3', 'malfunction -15.000 amount'], [F.clearMalfunctionFrames(255), 'malfunction-clear 255']];
+        [F.clockFrames({timeMs: 3600003, rate: 0.5, seed: 7}), 'exercise-seed 7.000', 'exercise-rate 0.500 x',
+            'exercise-time 3600003.000 ms'],
+        [F.malfunctionFrames(3, -15), 'service 3', 'malfunction -15.000 amount'],
+            [F.clearMalfunctionFrames(255), 'malfunction-clear 255']];
     for (const [frames, ...words] of expected) {
         const told = decode(F.linesOf(frames, 31, 200));
         words.forEach((w) => assert.ok(told.includes(w), `${w}\n${told}`));
@@ -62,12 +72,18 @@ test('every frame of the page is taken by landmass-bus as it was meant', () => {
 
 test('every control of the page is a control of landmass-bus', () => {
     const C = F.controlFrames;
-    const expected = [[C.key(true, 12), /control key: .*service 1 .*UCHAR 12/], [C.key(false, 12), /control key: .*service 0 .*UCHAR 12/],
-        [C.switch(2), /control switch: .*UCHAR 2/], [C.knob(-1000), /range knob: .*LONG -1000/], [C.slew(1000, -1000), /slew right: .*LONG 1000[^]*slew up: .*LONG -1000/],
-        [C.sector(2, 1), /control sector: .*UCHAR2 2 1/], [C.rangeScale(40), /range scale: .*LONG 40/], [C.sectorWidth(1), /sector width: .*UCHAR 1/],
-        [C.gain(-3), /control gain: .*CHAR -3/], [C.cursor(46.5, 11), /cursor latitude: .*LONG 465000000[^]*cursor longitude: .*LONG 110000000/],
-        [C.steer(46.5, 11), /steer latitude: .*service 0[^]*steer longitude/], [C.steerOff(), /steer latitude: .*service 1[^]*steer longitude: .*service 1/],
-        [C.patch(46, 11, 5), /patch latitude: .*service 4[^]*patch longitude: .*service 4[^]*patch cell: .*service 4 .*LONG 5000/]];
+    const expected = [[C.key(true, 12), /control key: .*service 1 .*UCHAR 12/],
+        [C.key(false, 12), /control key: .*service 0 .*UCHAR 12/],
+        [C.switch(2), /control switch: .*UCHAR 2/], [C.knob(-1000), /range knob: .*LONG -1000/],
+            [C.slew(1000, -1000), /slew right: .*LONG 1000[^]*slew up: .*LONG -1000/],
+        [C.sector(2, 1), /control sector: .*UCHAR2 2 1/], [C.rangeScale(40), /range scale: .*LONG 40/],
+            [C.sectorWidth(1), /sector width: .*UCHAR 1/],
+        [C.gain(-3), /control gain: .*CHAR -3/], [C.cursor(46.5, 11),
+            /cursor latitude: .*LONG 465000000[^]*cursor longitude: .*LONG 110000000/],
+        [C.steer(46.5, 11), /steer latitude: .*service 0[^]*steer longitude/],
+            [C.steerOff(), /steer latitude: .*service 1[^]*steer longitude: .*service 1/],
+        [C.patch(46, 11, 5),
+            /patch latitude: .*service 4[^]*patch longitude: .*service 4[^]*patch cell: .*service 4 .*LONG 5000/]];
     for (const [frames, words] of expected) {
         assert.match(decode(F.linesOf(frames, 31, 1)), words);
     }
@@ -75,8 +91,10 @@ test('every control of the page is a control of landmass-bus', () => {
 
 test('what landmass-nav tells is read as it was told', () => {
     const file = `${tmp}/nav.log`;
-    program('landmass-nav', '--straight', '46,11,30,3000,150', '--seconds', '3', '--rain', '46.1,11.2,4000,30', '--jammer', '46.2,11.1,30', '--live',
-        '3,13,46.1,11,90,15', '--live', '5,6,46.3,11,180,40,1200,3', '--exercise-clock', '3600', '--exercise-seed', '7', '--malfunction', 'weak-transmit=20',
+    program('landmass-nav', '--straight', '46,11,30,3000,150', '--seconds', '3', '--rain', '46.1,11.2,4000,30',
+        '--jammer', '46.2,11.1,30', '--live',
+        '3,13,46.1,11,90,15', '--live', '5,6,46.3,11,180,40,1200,3', '--exercise-clock', '3600', '--exercise-seed', '7',
+            '--malfunction', 'weak-transmit=20',
         '--out', file, '--quiet');
     const world = new World(), reader = new F.Reader();
     for (const line of fs.readFileSync(file, 'utf8').trim().split('\n')) {
@@ -93,7 +111,8 @@ test('what landmass-nav tells is read as it was told', () => {
     assert.deepEqual([ship.kind, ship.speedMs, Math.round(ship.courseDeg), ship.heightM], [13, 15, 90, null]);
     assert.deepEqual([aircraft.kind, aircraft.heightM], [6, 1200]);
     near(aircraft.turnDegS, 3, 0.01);
-    assert.deepEqual([world.rain.get(0).rateMmH, world.rain.get(0).radiusM, world.jammer.get(0).ratioDb], [30, 4000, 30]);
+    assert.deepEqual([world.rain.get(0).rateMmH, world.rain.get(0).radiusM, world.jammer.get(0).ratioDb],
+        [30, 4000, 30]);
     assert.deepEqual([world.clock.seed, world.clock.rate, world.malfunctions.get(1).amount], [7, 1, 20]);
     near(world.exerciseMs(), 3603000, 20);
 });
@@ -101,8 +120,10 @@ test('what landmass-nav tells is read as it was told', () => {
 test('positions of every type that the bus has are read', () => {
     for (const type of ['double', 'float', 'long']) {
         const file = `${tmp}/${type}.log`, world = new World(), reader = new F.Reader();
-        program('landmass-nav', '--straight', '46,-179.9999,90,3000,150', '--seconds', '2', '--position', type, '--out', file, '--quiet');
-        fs.readFileSync(file, 'utf8').trim().split('\n').forEach((line) => reader.take(parseLine(line)).forEach((fact) => world.take(fact, 'a')));
+        program('landmass-nav', '--straight', '46,-179.9999,90,3000,150', '--seconds', '2', '--position', type, '--out',
+            file, '--quiet');
+        fs.readFileSync(file, 'utf8').trim().split('\n').forEach((line) =>
+            reader.take(parseLine(line)).forEach((fact) => world.take(fact, 'a')));
         near(world.own.latitude.value, 46, 1e-4);
         near(world.own.longitude.value, -179.9961, 4e-4);
     }
@@ -110,7 +131,8 @@ test('positions of every type that the bus has are read', () => {
 
 test('the words of the state are those of the glass', async () => {
     const source = fs.readFileSync('firmware/display/overlay.c', 'utf8');
-    const words = /flag_words\[LM_FLAGS\]\[9\] = \{([^}]*)\}/.exec(source)[1].match(/"[^"]*"/g).map((w) => w.slice(1, -1));
+    const words = /flag_words\[LM_FLAGS\]\[9\] = \{([^}]*)\}/.exec(source)[1].match(/"[^"]*"/g)
+        .map((w) => w.slice(1, -1));
     assert.deepEqual(F.FLAG_WORDS, words);
 });
 
@@ -124,20 +146,25 @@ test('kinds and amounts are those of docs/bus.md', () => {
 
 test('hostile frames give no fact', () => {
     const reader = new F.Reader();
-    const bad = ['(1.000000) a 712#1F0200007FC00000', '(1.000000) a 710#1F0A000009', '(1.000000) a 721#1F02000BFFFFFFFF',
-        '(1.000000) a 721#1F020B0041A00000', '(1.000000) a 717#1F100005020A0000', '(1.000000) a 708#1F02040042380000', '(1.000000) a 71C#1F030000FFFFFFFF',
-        '(1.000000) a 708#', '(1.000000) a 708#1F', '(1.000000) a 70A#1F02000042C6', '(1.000000) a 40C#0002000042380000', '(1.000000) a 71D#1F02000041C00000'];
+    const bad = ['(1.000000) a 712#1F0200007FC00000', '(1.000000) a 710#1F0A000009',
+        '(1.000000) a 721#1F02000BFFFFFFFF',
+        '(1.000000) a 721#1F020B0041A00000', '(1.000000) a 717#1F100005020A0000', '(1.000000) a 708#1F02040042380000',
+            '(1.000000) a 71C#1F030000FFFFFFFF',
+        '(1.000000) a 708#', '(1.000000) a 708#1F', '(1.000000) a 70A#1F02000042C6',
+            '(1.000000) a 40C#0002000042380000', '(1.000000) a 71D#1F02000041C00000'];
     bad.forEach((line) => assert.deepEqual(reader.take(parseLine(line)), [], line));
     let seed = 1;
     const random = (below) => (seed = (seed * 1103515245 + 12345) % 2 ** 31) % below;
     const world = new World();
     for (let n = 0; n < 200000; n++) {
         const id = [1036 + random(20), 1500 + random(50), 1800 + random(30)][random(3)];
-        const frame = {id, isExtended: false, data: Array.from({length: random(9)}, () => random(4) ? random(256) : random(32)), timeUs: n * 500};
+        const frame = {id, isExtended: false, data: Array.from({length: random(9)},
+            () => random(4) ? random(256) : random(32)), timeUs: n * 500};
         world.nowUs = frame.timeUs;
         reader.take(frame).forEach((fact) => world.take(fact, 'x'));
     }
-    assert.ok(world.events.length <= 500 && world.targets.size <= 256 && world.rain.size <= 4 && reader.sets.size < 3 * 256 * 256);
+    assert.ok(world.events.length <= 500 && world.targets.size <= 256 && world.rain.size <= 4
+        && reader.sets.size < 3 * 256 * 256);
 });
 
 /* ---- pages that share a bus ---- */
@@ -150,10 +177,12 @@ class Bus {
 
     page(random) {
         const world = new World(), reader = new F.Reader(), page = {world, heard: [], isThere: true, reports: []};
-        page.keeper = new Keeper({send: (text) => this.queue.push(...text.split('\n')), nowMs: () => this.ms, node: F.STATION_NODE, random: () => random});
+        page.keeper = new Keeper({send: (text) => this.queue.push(...text.split('\n')), nowMs: () => this.ms,
+            node: F.STATION_NODE, random: () => random});
         page.commands = new Commands(world, page.keeper);
         page.take = (line) => reader.take({...parseLine(line), timeUs: this.ms * 1000}).forEach((fact) => {
-            const isHeard = world.take(fact, page.keeper.isOwn(fact) ? 'this page' : 'another page'), lost = page.keeper.hear(fact, isHeard);
+            const isHeard = world.take(fact, page.keeper.isOwn(fact) ? 'this page' : 'another page'),
+                lost = page.keeper.hear(fact, isHeard);
             page.reports.push(...lost ? [lost] : []);
         });
         this.pages.push(page);
@@ -258,7 +287,8 @@ test('a page that goes away leaves its exercise to another, before the displays 
     assert.equal(b.keeper.keys.length + c.keeper.keys.length, 5);
     near(between(CAR, b.world.reckoned(b.world.targets.get(0))).distanceM, 20 * 15, 10);
     near(b.world.exerciseMs(), 60000 + 15000, 250);
-    assert.deepEqual([b.world.malfunctions.get(3).amount, b.world.sea.value, b.world.clock.seed, b.world.targets.get(0).heightM], [-15, 4, 5, 100]);
+    assert.deepEqual([b.world.malfunctions.get(3).amount, b.world.sea.value, b.world.clock.seed,
+        b.world.targets.get(0).heightM], [-15, 4, 5, 100]);
     b.isThere = c.isThere = false;
 });
 
@@ -348,7 +378,8 @@ test('a target follows its way with its speed, and stands at the end', () => {
 
 test('a way that goes round and round does not end', () => {
     const corners = [[46, 11], [46.01, 11], [46.01, 11.01]].map(([latitude, longitude]) => ({latitude, longitude}));
-    const t = new Target({number: 0, kind: 2, ...corners[0], speedMs: 100, route: [corners[1], corners[2], corners[0]], isLoop: true});
+    const t = new Target({number: 0, kind: 2, ...corners[0], speedMs: 100, route: [corners[1], corners[2], corners[0]],
+        isLoop: true});
     for (let s = 0; s < 300; s++) {
         t.advance(1);
     }
@@ -357,7 +388,8 @@ test('a way that goes round and round does not end', () => {
 });
 
 test('clocks and places are read and written', () => {
-    assert.deepEqual(['1:02:03', '2:03', '90', '0.5', 'x', '-1', '999:00:00', ''].map(clockOf), [3723000, 123000, 90000, 500, null, null, null, null]);
+    assert.deepEqual(['1:02:03', '2:03', '90', '0.5', 'x', '-1', '999:00:00', ''].map(clockOf),
+        [3723000, 123000, 90000, 500, null, null, null, null]);
     assert.equal(clockWords(3723999), '1:02:03');
     for (const place of [{latitude: 60, longitude: -179.5}, {latitude: -33.3, longitude: 151}]) {
         const back = placeOf(squareOf(place));

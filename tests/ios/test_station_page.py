@@ -100,8 +100,8 @@ class Page:
         self.js(f"station.map.goTo({{latitude: {place[0]}, longitude: {place[1]}}})")
 
     def told(self, act, *ids):
-        """Frames of these identifiers that an act puts on the bus: the first of each, and what comes with them."""
-        self.js("station.keeper.kept.forEach((item) => { item.sentMs = performance.now(); })")  # no repeat comes between
+        """Frames of these identifiers that an act puts on the bus; no repeat comes between."""
+        self.js("station.keeper.kept.forEach((item) => { item.sentMs = performance.now(); })")
         before = OUT.stat().st_size
         act()
         end, wanted = time.monotonic() + 10, set(ids)
@@ -115,8 +115,8 @@ class Page:
 
     def reset(self):
         """Nothing is told; the whole map is seen."""
-        self.js("station.commands.removeAllTargets(); station.commands.fairWeather(); station.commands.mendAll(); station.map.wholeMap()")
-        self.wait("targets.size + station.world.rain.size + station.world.jammer.size + station.world.malfunctions.size === 0")
+        self.js("const c = station.commands; c.removeAllTargets(); c.fairWeather(); c.mendAll(); station.map.wholeMap()")
+        self.b.until("((w) => w.targets.size + w.rain.size + w.jammer.size + w.malfunctions.size === 0)(station.world)")
         self.tool("look")
 
     def world(self, words):
@@ -133,7 +133,8 @@ MOVING = (1815, 1810, 1811, 1813, 1814)
 def bright(p, kind=16, speed=0):
     """The form: a target that every glass shows."""
     p.tab("targets")
-    for name, value in (("target-kind", kind), ("target-speed", speed), ("target-course", 0), ("target-height", ""), ("target-rcs", 60)):
+    for name, value in (("target-kind", kind), ("target-speed", speed), ("target-course", 0), ("target-height", ""),
+        ("target-rcs", 60)):
         p.fill(name, value)
 
 
@@ -381,7 +382,8 @@ def designate_drop_slew_and_knob_are_obeyed(p, g):
         before = OUT.stat().st_size
         web.ActionChains(p.b.driver).click_and_hold(button).pause(0.2).release().perform()
         time.sleep(0.3)
-        own = [line.split()[2] for line in OUT.read_text()[before:].splitlines() if " 5FE#1F" in line or " 5FF#1F" in line]
+        own = [line.split()[2] for line in OUT.read_text()[before:].splitlines() if " 5FE#1F" in line
+            or " 5FF#1F" in line]
         assert len(own) == 4, own
         flight, still = g.fly(own[:2], own[2:])["said"], g.fly()["said"]
         assert sign * (flight[item][0] - still[item][0]) > 10000, (way, flight[item], still[item])
@@ -487,8 +489,9 @@ def the_keyboard_alone_is_enough(p, g):
     p.start()
     for panel in ("targets", "weather", "malfunctions", "clock", "displays"):
         p.tab(panel)
-        wanted = p.js("return [...document.querySelectorAll('button, input, select, canvas, a, [tabindex=\"0\"]')].filter((e) => "
-                      "e.checkVisibility() && !e.disabled && !e.matches('fieldset:disabled *') && e.tabIndex >= 0 && !e.matches('[type=radio]:not(:checked)')).length")
+        wanted = p.js("return [...document.querySelectorAll('button, input, select, canvas, a, [tabindex=\"0\"]')]"
+                      ".filter((e) => e.checkVisibility() && !e.matches(':disabled, [type=radio]:not(:checked)') && "
+                      "e.tabIndex >= 0).length")
         reached = set()
         for _ in range(wanted + 6):
             p.b.press(web.Keys.TAB)
@@ -519,7 +522,8 @@ def fingers_pan_zoom_and_place_on_a_tablet(p, g):
     try:
         p.js("station.map.wholeMap(); document.querySelector('main').scrollTop = 0")
         time.sleep(0.3)
-        box = p.js("const r = document.getElementById('map').getBoundingClientRect(); return [r.left, r.top, r.width, r.height]")
+        box = p.js("const r = document.getElementById('map').getBoundingClientRect(); "
+                   "return [r.left, r.top, r.width, r.height]")
         middle = (box[0] + box[2] / 2, box[1] + box[3] / 2)
 
         def touch(kind, *points):
@@ -557,11 +561,14 @@ def the_page_fits_and_is_calm_where_motion_is_not_wanted(p, _):
         p.resize(width, height)
         for panel in ("targets", "weather", "malfunctions", "clock", "displays"):
             p.tab(panel)
-            wide = p.js("return [document.documentElement.scrollWidth, document.getElementById('right').scrollWidth - document.getElementById('right').clientWidth]")
+            wide = p.js("const right = document.getElementById('right'); "
+                        "return [document.documentElement.scrollWidth, right.scrollWidth - right.clientWidth]")
             assert wide[0] <= width and wide[1] <= 0, (width, panel, wide)
     p.resize(1280, 720)
-    p.js("document.activeElement.blur(); station.drawn = 0; const d = station.map.draw.bind(station.map); station.map.draw = (l) => { station.drawn++; d(l); }")
-    p.b.driver.execute_cdp_cmd("Emulation.setEmulatedMedia", {"features": [{"name": "prefers-reduced-motion", "value": "reduce"}]})
+    p.js("document.activeElement.blur(); const {map} = station, draw = map.draw.bind(map); "
+         "map.draw = (layers) => { station.drawn++; draw(layers); }")
+    p.b.driver.execute_cdp_cmd("Emulation.setEmulatedMedia",
+        {"features": [{"name": "prefers-reduced-motion", "value": "reduce"}]})
     time.sleep(2)
     p.js("station.drawn = 0")
     time.sleep(2)
@@ -573,18 +580,21 @@ def the_page_fits_and_is_calm_where_motion_is_not_wanted(p, _):
 def the_page_asks_no_other_server_and_has_no_error(p, _):
     names = p.js("return performance.getEntriesByType('resource').map((entry) => entry.name)")
     assert names and all(name.startswith((p.b.url, "data:")) for name in names), names
-    errors = [e for e in p.b.driver.get_log("browser") if e["level"] == "SEVERE" and "/map/" not in e["message"] and "WebSocket" not in e["message"]]
+    errors = [e for e in p.b.driver.get_log("browser") if e["level"] == "SEVERE" and "/map/" not in e["message"]
+        and "WebSocket" not in e["message"]]
     assert not errors, errors
 
 
-TESTS = [a_target_is_placed_and_stands_on_the_glass, a_target_that_is_dragged_moves_on_the_glass, a_way_is_gone_with_its_speed,
-         a_target_is_changed_moved_and_removed, all_targets_go_at_once, rain_is_placed_changed_dragged_and_removed,
-         a_jammer_is_placed_and_fair_weather_ends_it, sea_and_wind_are_told, each_malfunction_breaks_the_picture_and_is_mended,
-         a_dead_key_does_nothing, every_key_of_the_bezel_is_obeyed, the_picture_is_held_and_released, mode_range_width_and_gain_are_obeyed,
+TESTS = [a_target_is_placed_and_stands_on_the_glass, a_target_that_is_dragged_moves_on_the_glass,
+         a_way_is_gone_with_its_speed, a_target_is_changed_moved_and_removed, all_targets_go_at_once,
+         rain_is_placed_changed_dragged_and_removed, a_jammer_is_placed_and_fair_weather_ends_it,
+         sea_and_wind_are_told, each_malfunction_breaks_the_picture_and_is_mended, a_dead_key_does_nothing,
+         every_key_of_the_bezel_is_obeyed, the_picture_is_held_and_released, mode_range_width_and_gain_are_obeyed,
          cursor_steerpoint_and_patch_go_where_the_map_says, designate_drop_slew_and_knob_are_obeyed,
          the_clock_freezes_runs_jumps_and_has_a_seed, what_cannot_be_is_said_and_not_sent, two_instructors_agree,
-         stale_navigation_and_a_lost_connection_are_plain, the_keyboard_alone_is_enough, fingers_pan_zoom_and_place_on_a_tablet,
-         the_page_fits_and_is_calm_where_motion_is_not_wanted, the_page_asks_no_other_server_and_has_no_error]
+         stale_navigation_and_a_lost_connection_are_plain, the_keyboard_alone_is_enough,
+         fingers_pan_zoom_and_place_on_a_tablet, the_page_fits_and_is_calm_where_motion_is_not_wanted,
+         the_page_asks_no_other_server_and_has_no_error]
 
 
 class Server:

@@ -13,18 +13,10 @@ export class Commands {
 
     /* ---- live targets ---- */
 
-    freeNumber(held, most) {
-        for (let n = 0; n < most; n++) {
-            if (!held.has(n) && ![...this.keeper.keys].some((key) => key.endsWith(` ${n}`) && key.startsWith('target') && held === this.world.targets)) {
-                return n;
-            }
-        }
-        return null;
-    }
-
     /* Place a target; its number, or null where all are in use. */
     placeTarget(of) {
-        const number = this.freeNumber(this.world.targets, F.TARGETS);
+        const isFree = (n) => !this.world.targets.has(n) && !this.keeper.kept.has(`target ${n}`);
+        const number = Array.from({length: F.TARGETS}, (_, n) => n).find(isFree) ?? null;
         if (number !== null) {
             this.keepTarget(new Target({...of, number}));
         }
@@ -41,7 +33,8 @@ export class Commands {
         if (kept || !told) {
             return kept ? kept.target : null;
         }
-        const {latitude, longitude} = this.world.reckoned(told), {kind, speedMs, courseDeg, heightM, rcsDbsm, signature} = told;
+        const {latitude, longitude} = this.world.reckoned(told),
+            {kind, speedMs, courseDeg, heightM, rcsDbsm, signature} = told;
         return new Target({number, latitude, longitude, kind, speedMs, courseDeg, heightM, rcsDbsm, signature});
     }
 
@@ -65,14 +58,16 @@ export class Commands {
 
     removeAllTargets() {
         const keys = [...this.world.targets.keys()].map((n) => `target ${n}`);
-        this.keeper.remove([...new Set([...keys, ...this.keeper.keys.filter((key) => key.startsWith('target'))])], F.clearTargetsFrames());
+        this.keeper.remove([...new Set([...keys, ...this.keeper.keys.filter((key) => key.startsWith('target'))])],
+            F.clearTargetsFrames());
     }
 
     /* ---- weather ---- */
 
     /* Rain or a jammer of a number; null: the next free one. The number, or null where all are in use. */
     circle(what, number, values) {
-        const free = number ?? CIRCLE_NUMBERS.find((n) => !this.world[what].has(n) && !this.keeper.kept.has(`${what} ${n}`)) ?? null;
+        const free = number ?? CIRCLE_NUMBERS.find((n) => !this.world[what].has(n)
+            && !this.keeper.kept.has(`${what} ${n}`)) ?? null;
         if (free !== null) {
             const make = what === 'rain' ? F.rainFrames : F.jammerFrames;
             this.keeper.keep(`${what} ${free}`, () => make(free, values));
@@ -113,10 +108,13 @@ export class Commands {
 
     /* ---- exercise clock ---- */
 
-    /* The clock from now on. What is left out stays as it is told; nobody told: it begins at 0, runs, and has no seed. */
-    clock({timeMs = this.world.exerciseMs() ?? 0, rate = this.world.clock?.rate ?? 1, seed = this.world.clock?.seed ?? null}) {
+    /* The clock from now on. What is left out stays as it is told. Where nobody told one, it begins at 0, runs, and
+     * has no seed. */
+    clock({timeMs = this.world.exerciseMs() ?? 0, rate = this.world.clock?.rate ?? 1,
+        seed = this.world.clock?.seed ?? null}) {
         const beganMs = this.keeper.nowMs();
-        const frames = () => F.clockFrames({timeMs: Math.round(timeMs + rate * (this.keeper.nowMs() - beganMs)), rate, seed});
+        const nowMs = () => Math.round(timeMs + rate * (this.keeper.nowMs() - beganMs));
+        const frames = () => F.clockFrames({timeMs: nowMs(), rate, seed});
         this.keeper.keep('clock', frames);
         this.refreshTargets();
     }
@@ -163,7 +161,8 @@ export class Commands {
 
     adopt(key) {
         const [name, word] = key.split(' '), number = Number(word), {world} = this;
-        const acts = {target: () => this.changeTarget(number, {}), rain: () => this.circle('rain', number, world.rain.get(number)),
+        const acts = {target: () => this.changeTarget(number, {}),
+            rain: () => this.circle('rain', number, world.rain.get(number)),
             jammer: () => this.circle('jammer', number, world.jammer.get(number)), sea: () => this.sea(world.sea.value),
             wind: () => this.wind(world.wind.value), clock: () => this.clock({}),
             malfunction: () => this.malfunction(number, world.malfunctions.get(number).amount)};

@@ -33,6 +33,9 @@ export function numberOf(input) {
     return input.validity.valid && Number.isFinite(value) ? value : NaN;
 }
 
+/* What an input takes, in words. */
+export const limits = (input) => `${input.labels[0].firstChild.textContent.trim()}: ${input.min} to ${input.max}`;
+
 /* One element of `body` for each item, in order: `create(key)` makes it, `update(element, item)` fills it. */
 export function rows(body, items, create, update) {
     const held = new Map([...body.children].map((element) => [element.dataset.key, element]));

@@ -29,19 +29,22 @@ const FPW = 2; // dead reckoning: straight on
 
 /* Kinds of live targets, in the order of their numbers. */
 export const KINDS = ['unknown', 'person', 'car', 'truck', 'tracked vehicle', 'train', 'light aircraft', 'fighter',
-    'large aircraft', 'helicopter', 'missile', 'boat', 'ship of 200 t', 'ship of 2,000 t', 'ship of 20,000 t', 'structure',
+    'large aircraft', 'helicopter', 'missile', 'boat', 'ship of 200 t', 'ship of 2,000 t', 'ship of 20,000 t',
+        'structure',
     'corner reflector'];
 
 /* Malfunctions, in the order of their numbers: name, unit of the amount ('' has none), its range, and
  * what the page offers to begin with. */
 export const MALFUNCTIONS = [['no transmitter', '', 0, 0, 0], ['weak transmitter', 'dB', 0, 60, 20],
-    ['noisy receiver', 'dB', 0, 60, 20], ['stuck antenna', 'deg', -180, 180, 0], ['drifting antenna', 'deg', -180, 180, 5],
+    ['noisy receiver', 'dB', 0, 60, 20], ['stuck antenna', 'deg', -180, 180, 0],
+        ['drifting antenna', 'deg', -180, 180, 5],
     ['lost sector, left edge', 'deg', -180, 180, -20], ['lost sector, right edge', 'deg', -180, 180, 0],
     ['frozen video', '', 0, 0, 0], ['tilt offset', 'deg', -30, 30, 3], ['dead key', 'key', 1, 28, 1]]
     .map(([name, unit, low, high, usual]) => ({name, unit, low, high, usual}));
 
 /* Words of the state word's bits (1500), as the glass shows them. `test_station` compares. */
-export const FLAG_WORDS = ['NAV', 'NAV FAIL', 'DB FAIL', 'TILE', 'BUS', 'FZ', 'OFF MAP', 'NO RAD', 'UNABLE', 'WX', 'BLW TERR',
+export const FLAG_WORDS = ['NAV', 'NAV FAIL', 'DB FAIL', 'TILE', 'BUS', 'FZ', 'OFF MAP', 'NO RAD', 'UNABLE', 'WX',
+    'BLW TERR',
     'MAG HDG', 'EXC', 'SENDER', 'MALF'];
 export const MODES = ['GM', 'GMT', 'SEA'], FIELDS_OF_VIEW = ['NORM', 'EXP', 'DBS1', 'DBS2'];
 export const PAGES = ['radar', 'CNTL', 'DCLT', 'BIT', 'test pattern'];
@@ -75,12 +78,15 @@ const place = (id, latitude, longitude, service) => [frame(id, TYPE.LONG, latitu
 /* Lines of `candump -L` of frames that are one set: one node, one message code. */
 export function linesOf(frames, node, code) {
     const hex = (byte) => byte.toString(16).toUpperCase().padStart(2, '0');
-    return frames.map(({id, type, service, bytes}) => '(0.000000) page '
-        + `${id.toString(16).toUpperCase().padStart(3, '0')}#${[node, type, service, code, ...bytes].map(hex).join('')}`);
+    return frames.map(({id, type, service, bytes}) => {
+        const name = id.toString(16).toUpperCase().padStart(3, '0');
+        return `(0.000000) page ${name}#${[node, type, service, code, ...bytes].map(hex).join('')}`;
+    });
 }
 
 export function rainFrames(number, {latitude, longitude, radiusM, rateMmH}) {
-    return [...place(ID.rainLatitude, latitude, longitude, number), frame(ID.rainLatitude + 2, TYPE.FLOAT, radiusM, number),
+    return [...place(ID.rainLatitude, latitude, longitude, number),
+        frame(ID.rainLatitude + 2, TYPE.FLOAT, radiusM, number),
         frame(ID.rainLatitude + 3, TYPE.FLOAT, rateMmH, number)];
 }
 
@@ -101,7 +107,8 @@ export function targetFrames(number, t) {
         set.push(frame(ID.liveHeight, TYPE.FLOAT, heightM, number));
     }
     if (speedMs > 0) {
-        set.push(frame(ID.liveVelocity, TYPE.SHORT2, [20 * speedMs * Math.sin(course), 20 * speedMs * Math.cos(course)], number));
+        set.push(frame(ID.liveVelocity, TYPE.SHORT2, [20 * speedMs * Math.sin(course), 20 * speedMs * Math.cos(course)],
+            number));
     }
     set.push(frame(ID.liveHeading, TYPE.SHORT2, [signedDegrees(courseDeg) * 32768 / 180, 0], number));
     return rcsDbsm === null ? set : [...set, frame(ID.liveRcs, TYPE.FLOAT, rcsDbsm, number)];
@@ -194,7 +201,8 @@ const SETS = [
 const SET_OF = new Map(SETS.flatMap((set) => [...set.members.keys()].map((id) => [id, set])));
 
 function needsOfTarget({description}) {
-    const byPart = [[PART.height, 1812], [PART.velocity, 1813], [PART.heading, 1814], [PART.rcs, 1816], [PART.acceleration, 1819]];
+    const byPart = [[PART.height, 1812], [PART.velocity, 1813], [PART.heading, 1814], [PART.rcs, 1816],
+        [PART.acceleration, 1819]];
     return !description ? [1810, 1811, 1815]
         : [1810, 1811, 1815].concat(byPart.filter(([part]) => description[3] & part).map(([, id]) => id));
 }
@@ -212,9 +220,11 @@ const SINGLES = new Map([
     [1822, [TYPE.LONG, count('exercise-seed', 0, 2147483647, 'seed')]],
     [1825, [TYPE.FLOAT, ([amount], kind) => {
         const of = MALFUNCTIONS[kind];
-        return of && (of.unit === '' || (amount >= of.low && amount <= of.high)) ? {what: 'malfunction', kind, amount} : null;
+        return of && (of.unit === '' || (amount >= of.low && amount <= of.high)) ? {what: 'malfunction', kind, amount}
+            : null;
     }]],
-    [1826, [TYPE.UCHAR, ([kind]) => kind < MALFUNCTIONS.length || kind === ALL ? {what: 'malfunction-clear', kind} : null]],
+    [1826, [TYPE.UCHAR, ([kind]) => kind < MALFUNCTIONS.length || kind === ALL ? {what: 'malfunction-clear', kind}
+        : null]],
     [1500, [TYPE.BLONG, ([flags]) => ({what: 'display-state', flags})]],
     [1519, [TYPE.UCHAR4, ([kind, mode, field, page]) => ({what: 'display-picture', kind, mode, field, page})]],
     [1520, [TYPE.LONG, ([nm]) => ({what: 'display-range', nm})]],
@@ -264,7 +274,8 @@ export class Reader {
 
     navigation(item, channel, data, values, about) {
         const [field, preference, isBelieved] = NAVIGATION.get(item), type = data[1];
-        const value = type === TYPE.DOUBLEH || type === TYPE.DOUBLEL ? this.joinHalves(item + 65536 * channel, data, values[0], about)
+        const value = type === TYPE.DOUBLEH || type === TYPE.DOUBLEL
+            ? this.joinHalves(item + 65536 * channel, data, values[0], about)
             : type === TYPE.SHORT2 ? values[0] * values[1] / 32767
             : type === TYPE.LONG && isBelieved(values[0] / 1e7) ? values[0] / 1e7
             : type === TYPE.FLOAT ? values[0] : NaN;
@@ -297,7 +308,8 @@ export class Reader {
             return null;
         }
         const key = `${kind.what} ${node} ${number}`, held = this.sets.get(key);
-        const isSame = held && held.code === code && !(item in held.values) && about.timeUs - held.timeUs <= kind.withinUs;
+        const isSame = held && held.code === code && !(item in held.values)
+            && about.timeUs - held.timeUs <= kind.withinUs;
         const set = isSame ? held : {code, timeUs: about.timeUs, values: {}, keys: [], named: {}};
         set.values[item] = value;
         set.named[name] = value;
@@ -319,11 +331,14 @@ export class Reader {
         if (kind.what !== 'target') {
             return {...fact, ...named};
         }
-        const {description: [k, reckoning, signature, parts], velocityMs: [east, north] = [0, 0], latitude, longitude} = named;
+        const {description: [k, reckoning, signature, parts], velocityMs: [east, north] = [0, 0], latitude,
+            longitude} = named;
         const speedMs = Math.hypot(east, north), along = speedMs > 0 ? Math.atan2(east, north) * 180 / Math.PI : 0;
         const [courseDeg, turnDegS] = named.heading ?? [along, 0];
-        return speedMs > SPEED_MOST || Math.abs(turnDegS) > 60 ? null : {...fact, kind: k < KINDS.length ? k : 0, reckoning,
+        return speedMs > SPEED_MOST || Math.abs(turnDegS) > 60 ? null
+            : {...fact, kind: k < KINDS.length ? k : 0, reckoning,
             signature, parts, latitude, longitude, eastMs: east, northMs: north, speedMs, headingDeg: courseDeg,
-            courseDeg: speedMs > 0 ? along : courseDeg, turnDegS, heightM: named.heightM ?? null, rcsDbsm: named.rcsDbsm ?? null};
+            courseDeg: speedMs > 0 ? along : courseDeg, turnDegS, heightM: named.heightM ?? null,
+                rcsDbsm: named.rcsDbsm ?? null};
     }
 }

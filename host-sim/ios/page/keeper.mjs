@@ -4,7 +4,7 @@
  * back. The page whose frames were the last on the bus keeps the thing; when another page's frames of
  * the same thing come back, this page stops. What a page kept that has gone away is kept by another
  * one after two to three seconds, before the displays drop it. */
-import {linesOf} from './frames.mjs';
+import {ALL, linesOf} from './frames.mjs';
 import {subjectOf} from './world.mjs';
 
 const REPEAT_MS = 1000, ECHO_MS = 5000, CLASH_MS = 300, SAME_SET_MS = 20, TAKE_OVER_US = 1.8e6, TAKE_OVER_MORE_US = 1e6;
@@ -14,14 +14,29 @@ export function keyOf(fact) {
     return fact.what === 'malfunction' ? `malfunction ${fact.kind}` : subjectOf(fact);
 }
 
-/* What counts its message codes together. */
-const groupOf = (id) => id >= 1530 && id <= 1549 ? 'control' : id >= 1800 && id <= 1803 ? 'rain' : id >= 1804 && id <= 1806 ? 'jammer'
-    : id >= 1810 && id <= 1819 && id !== 1817 && id !== 1818 ? 'target' : String(id);
+/* What counts its message codes together: [first identifier, last, name]. */
+const GROUPS = [[1530, 1549, 'control'], [1800, 1803, 'rain'], [1804, 1806, 'jammer'], [1810, 1816, 'target'],
+    [1819, 1819, 'target']];
+const groupOf = (id) => GROUPS.find(([first, last]) => id >= first && id <= last)?.[2] ?? String(id);
+
+/* Whether a fact that clears things clears the thing of a key. */
+function clears(fact, key) {
+    const [name, word] = key.split(' '), number = Number(word);
+    const {what, bits, kind} = fact;
+    const isCleared = {'target-clear': () => name === 'target',
+        'target-remove': () => name === 'target' && number === fact.number,
+        'malfunction-clear': () => name === 'malfunction' && (kind === ALL || kind === number),
+        'weather-clear': () => (name === 'rain' && bits >> number & 1)
+            || (name === 'jammer' && bits >> (4 + number) & 1)
+            || ((name === 'sea' || name === 'wind') && bits === ALL)};
+    return Boolean(isCleared[what]?.());
+}
 
 export class Keeper {
     /* `send(lines)` puts text on the bus, `nowMs()` is a clock that never goes back. */
     constructor({send, nowMs, node, random = Math.random}) {
-        Object.assign(this, {send, nowMs, node, random, kept: new Map(), sent: new Map(), codes: new Map(), removed: new Map()});
+        Object.assign(this, {send, nowMs, node, random, kept: new Map(), sent: new Map(), codes: new Map(),
+            removed: new Map()});
     }
 
     /* ---- telling ---- */
@@ -43,7 +58,8 @@ export class Keeper {
     /* From now on tell this, once a second. `frames()` gives what to tell at the moment. */
     keep(key, frames, more = {}) {
         this.removed.delete(key);
-        this.kept.set(key, {...more, frames, wishedMs: this.nowMs(), sentMs: this.nowMs(), retriedMs: -Infinity, tries: 1});
+        this.kept.set(key, {...more, frames, wishedMs: this.nowMs(), sentMs: this.nowMs(), retriedMs: -Infinity,
+            tries: 1});
         this.tell(frames());
     }
 
@@ -112,14 +128,7 @@ export class Keeper {
 
     /* Another page removed things. */
     hearRemoval(fact) {
-        const isGone = (key) => {
-            const [name, number] = [key.split(' ')[0], Number(key.split(' ')[1])];
-            return fact.what === 'target-clear' ? name === 'target' : fact.what === 'target-remove' ? name === 'target' && number === fact.number
-                : fact.what === 'malfunction-clear' ? name === 'malfunction' && (fact.kind === 255 || fact.kind === number)
-                : fact.what === 'weather-clear' && (name === 'rain' ? fact.bits >> number & 1 : name === 'jammer' ? fact.bits >> (4 + number) & 1
-                    : (name === 'sea' || name === 'wind') && fact.bits === 255);
-        };
-        [...this.kept.keys()].filter(isGone).forEach((key) => this.kept.delete(key));
+        [...this.kept.keys()].filter((key) => clears(fact, key)).forEach((key) => this.kept.delete(key));
         return null;
     }
 

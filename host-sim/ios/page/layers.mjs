@@ -4,7 +4,8 @@ import {MODES} from './frames.mjs';
 import {between, NAUTICAL_MILE_M} from './geo.mjs';
 import {OWN_STALE_US, STALE_US} from './world.mjs';
 
-const COLOUR = {own: '#fff', stale: '#ffb000', target: '#ff6a5e', chosen: '#ffe14d', rain: '#6cc5ff', jammer: '#e08bff', display: '#7dff9a'};
+const COLOUR = {own: '#fff', stale: '#ffb000', target: '#ff6a5e', chosen: '#ffe14d', rain: '#6cc5ff', jammer: '#e08bff',
+    display: '#7dff9a'};
 const VECTOR_S = 30; // how far ahead the line of a target's speed reaches
 
 /* A symbol of lines around a pixel, turned by degrees from north. */
@@ -18,9 +19,11 @@ function symbol(map, [x, y], degrees, strokes, colour) {
 }
 
 const AIRCRAFT = [[[0, 14], [0, -12]], [[-13, 1], [13, 1]], [[-5, -11], [5, -11]]];
-const SHAPES = {ship: [[[0, 9], [5, 2], [5, -8], [-5, -8], [-5, 2], [0, 9]]], air: [[[0, 9], [0, -7]], [[-8, 0], [8, 0]]],
+const SHAPES = {ship: [[[0, 9], [5, 2], [5, -8], [-5, -8], [-5, 2], [0, 9]]],
+    air: [[[0, 9], [0, -7]], [[-8, 0], [8, 0]]],
     ground: [[[-6, 6], [6, 6], [6, -6], [-6, -6], [-6, 6]]], still: [[[0, 8], [7, -6], [-7, -6], [0, 8]]]};
-const shapeOf = (kind) => kind >= 6 && kind <= 10 ? SHAPES.air : kind >= 11 && kind <= 14 ? SHAPES.ship : kind >= 15 ? SHAPES.still : SHAPES.ground;
+const shapeOf = (kind) => kind >= 6 && kind <= 10 ? SHAPES.air : kind >= 11 && kind <= 14 ? SHAPES.ship : kind >= 15
+    ? SHAPES.still : SHAPES.ground;
 
 export function ownLayer(world) {
     return (map) => {
@@ -30,7 +33,8 @@ export function ownLayer(world) {
         if (!own) {
             return;
         }
-        const isStale = own.ageUs > OWN_STALE_US, colour = isStale ? COLOUR.stale : COLOUR.own, [x, y] = map.toPixel(own);
+        const isStale = own.ageUs > OWN_STALE_US, colour = isStale ? COLOUR.stale : COLOUR.own,
+            [x, y] = map.toPixel(own);
         symbol(map, [x, y], own.headingDeg ?? 0, AIRCRAFT, colour);
         map.words(isStale ? `STALE ${(own.ageUs / 1e6).toFixed(0)} s` : 'OWN', x + 16, y - 10, colour);
     };
@@ -51,11 +55,13 @@ export function displayLayer(world) {
                 pen.closePath();
             }, [6, 4]);
         }
-        [[cursor, 'cursor'], [place, 'patch']].filter(([thing]) => isFresh(thing) && 'latitude' in thing && 'longitude' in thing)
+        [[cursor, 'cursor'], [place, 'patch']].filter(([thing]) => isFresh(thing) && 'latitude' in thing
+            && 'longitude' in thing)
             .forEach(([thing, name]) => {
                 const at = map.toPixel(thing);
                 symbol(map, at, 0, [[[-9, 0], [9, 0]], [[0, -9], [0, 9]]], COLOUR.display);
-                map.words(`${name} ${node}${picture && name === 'cursor' ? ` ${MODES[picture.mode] ?? ''}` : ''}`, at[0] + 11, at[1] + 14, COLOUR.display);
+                map.words(`${name} ${node}${picture && name === 'cursor' ? ` ${MODES[picture.mode] ?? ''}` : ''}`,
+                    at[0] + 11, at[1] + 14, COLOUR.display);
             });
     });
 }
@@ -65,10 +71,12 @@ export function weatherLayer(world, grabbedOf) {
     return (map) => {
         for (const [what, colour] of [['rain', COLOUR.rain], ['jammer', COLOUR.jammer]]) {
             world[what].forEach((circle, number) => {
-                const grabbed = grabbedOf(what, number), place = grabbed ?? circle, dash = grabbed || world.isStale(circle) ? [3, 4] : [];
+                const grabbed = grabbedOf(what, number), place = grabbed ?? circle,
+                    dash = grabbed || world.isStale(circle) ? [3, 4] : [];
                 const [x, y] = map.toPixel(place);
                 if (what === 'rain') {
-                    map.circle(place, circle.radiusM / map.metresPerPixel(place.latitude), colour, 2, 'rgba(80,160,255,0.18)', dash);
+                    map.circle(place, circle.radiusM / map.metresPerPixel(place.latitude), colour, 2,
+                        'rgba(80,160,255,0.18)', dash);
                     map.words(`rain ${number} ${circle.rateMmH.toFixed(0)} mm/h`, x - 30, y + 4, colour);
                 } else {
                     symbol(map, [x, y], 0, [[[-9, -9], [9, 9]], [[-9, 9], [9, -9]], [[0, 12], [0, -12]]], colour);

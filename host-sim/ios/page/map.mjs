@@ -20,7 +20,8 @@ export function placeOf([x, y]) {
 export class MovingMap {
     /* `bounds`: that of map.json. `on`: {act(place), grab(place, nearM), drop(handle, place), changed()}. */
     constructor(canvas, bounds, on) {
-        Object.assign(this, {canvas, bounds, on, context: canvas.getContext('2d', {alpha: false}), tiles: new Map(), pointers: new Map(),
+        Object.assign(this, {canvas, bounds, on, context: canvas.getContext('2d', {alpha: false}), tiles: new Map(),
+            pointers: new Map(),
             isFollowing: true, isKeyboard: false, grabbed: null});
         this.wholeMap();
         this.listen();
@@ -30,10 +31,12 @@ export class MovingMap {
 
     wholeMap() {
         const {west, south, east, north} = this.bounds;
-        const [left, top] = squareOf({latitude: north, longitude: west}), [right, bottom] = squareOf({latitude: south, longitude: east});
+        const [left, top] = squareOf({latitude: north, longitude: west}),
+            [right, bottom] = squareOf({latitude: south, longitude: east});
         this.center = [(left + right) / 2, (top + bottom) / 2];
         const {clientWidth, clientHeight} = this.canvas;
-        this.zoom = this.clampZoom(Math.log2(Math.min(clientWidth / (right - left), clientHeight / (bottom - top)) / TILE));
+        this.zoom = this.clampZoom(Math.log2(Math.min(clientWidth / (right - left),
+            clientHeight / (bottom - top)) / TILE));
         this.isFollowing = false;
         this.on.changed?.();
     }
@@ -93,7 +96,8 @@ export class MovingMap {
         const {canvas} = this;
         canvas.addEventListener('pointerdown', (event) => this.pointerDown(event));
         canvas.addEventListener('pointermove', (event) => this.pointerMove(event));
-        ['pointerup', 'pointercancel'].forEach((name) => canvas.addEventListener(name, (event) => this.pointerUp(event)));
+        ['pointerup', 'pointercancel'].forEach((name) => canvas.addEventListener(name,
+            (event) => this.pointerUp(event)));
         canvas.addEventListener('wheel', (event) => {
             event.preventDefault();
             this.zoomBy(-event.deltaY / 400, event.offsetX, event.offsetY);
@@ -207,17 +211,21 @@ export class MovingMap {
         const {context: c, canvas: {clientWidth: width, clientHeight: height}} = this;
         c.fillStyle = '#181c20';
         c.fillRect(0, 0, width, height);
-        const z = Math.min(Math.max(Math.round(this.zoom), 0), this.bounds.zoom_max), count = 2 ** z, side = this.pixels / count;
+        const z = Math.min(Math.max(Math.round(this.zoom), 0), this.bounds.zoom_max), count = 2 ** z,
+            side = this.pixels / count;
         const {west, south, east, north} = this.bounds;
-        const [left, top] = squareOf({latitude: north, longitude: west}), [right, bottom] = squareOf({latitude: south, longitude: east});
+        const [left, top] = squareOf({latitude: north, longitude: west}),
+            [right, bottom] = squareOf({latitude: south, longitude: east});
         const [x0, y0] = squareOf(this.toPlace(0, 0)), [x1, y1] = squareOf(this.toPlace(width, height));
-        const from = (a, b) => Math.max(Math.floor(Math.max(a, b) * count), 0), to = (a, b) => Math.min(Math.floor(Math.min(a, b) * count), count - 1);
+        const from = (a, b) => Math.max(Math.floor(Math.max(a, b) * count), 0),
+            to = (a, b) => Math.min(Math.floor(Math.min(a, b) * count), count - 1);
         c.imageSmoothingEnabled = side < 1.5 * TILE;
         for (let y = from(top, y0); y <= to(bottom, y1); y++) {
             for (let x = from(left, x0); x <= to(right, x1); x++) {
                 const tile = this.tile(z, x, y);
                 if (tile.isThere) {
-                    const px = (x / count - this.center[0]) * this.pixels + width / 2, py = (y / count - this.center[1]) * this.pixels + height / 2;
+                    const px = (x / count - this.center[0]) * this.pixels + width / 2,
+                        py = (y / count - this.center[1]) * this.pixels + height / 2;
                     c.drawImage(tile.image, Math.floor(px), Math.floor(py), Math.ceil(side) + 1, Math.ceil(side) + 1);
                 }
             }
@@ -252,7 +260,8 @@ export class MovingMap {
 
     drawScale() {
         const {context: c, canvas: {clientHeight}} = this, metres = this.metresPerPixel();
-        const nm = [0.1, 0.2, 0.5, 1, 2, 5, 10, 20, 50, 100, 200, 500].find((n) => n * NAUTICAL_MILE_M / metres > 60) ?? 1000;
+        const nm = [0.1, 0.2, 0.5, 1, 2, 5, 10, 20, 50, 100, 200, 500].find((n) => n * NAUTICAL_MILE_M / metres > 60)
+            ?? 1000;
         const long = nm * NAUTICAL_MILE_M / metres, y = clientHeight - 14;
         [['#000', 4], ['#fff', 2]].forEach(([colour, wide]) => this.stroke(colour, wide, () => {
             c.moveTo(12, y - 4);
@@ -276,7 +285,8 @@ export class MovingMap {
     /* Words with an edge, which every ground lets be read. */
     words(text, x, y, colour = '#fff') {
         const {context: c} = this;
-        Object.assign(c, {font: '13px system-ui, sans-serif', lineJoin: 'round', strokeStyle: '#000', lineWidth: 3, fillStyle: colour});
+        Object.assign(c, {font: '13px system-ui, sans-serif', lineJoin: 'round', strokeStyle: '#000', lineWidth: 3,
+            fillStyle: colour});
         c.strokeText(text, x, y);
         c.fillText(text, x, y);
     }

@@ -8,8 +8,10 @@ export class ClockPanel {
     constructor(station) {
         this.station = station;
         const {commands, world} = station;
-        const acts = {freeze: () => commands.clock({rate: 0}), run: () => commands.clock({rate: this.runRate()}), 'clock-jump': () => this.jump(),
-            'clock-rate-tell': () => commands.clock({rate: Number(find('clock-rate').value)}), 'clock-seed-tell': () => this.seed()};
+        const acts = {freeze: () => commands.clock({rate: 0}), run: () => commands.clock({rate: this.runRate()}),
+            'clock-jump': () => this.jump(),
+            'clock-rate-tell': () => commands.clock({rate: Number(find('clock-rate').value)}),
+                'clock-seed-tell': () => this.seed()};
         Object.entries(acts).forEach(([id, act]) => find(id).addEventListener('click', act));
         document.querySelectorAll('[data-by]').forEach((b) => b.addEventListener('click', () =>
             commands.clock({timeMs: Math.max((world.exerciseMs() ?? 0) + 1000 * Number(b.dataset.by), 0)})));
@@ -43,10 +45,13 @@ export class ClockPanel {
         const {world} = this.station, {clock} = world, ms = world.exerciseMs();
         say(find('exercise-clock'), ms === null ? '-:--:--' : clockWords(ms));
         const isFrozen = clock?.rate === 0, isStale = clock !== null && world.isStale(clock);
-        say(find('exercise-state'), ms === null ? 'no exercise clock told' : `${isFrozen ? 'FROZEN' : `runs, rate ${clock.rate}`}${isStale ? ', NOT TOLD ANY MORE' : ''}`);
+        say(find('exercise-state'), ms === null ? 'no exercise clock told'
+            : `${isFrozen ? 'FROZEN' : `runs, rate ${clock.rate}`}${isStale ? ', NOT TOLD ANY MORE' : ''}`);
         find('freeze').setAttribute('aria-pressed', String(isFrozen));
         find('run').setAttribute('aria-pressed', String(clock !== null && !isFrozen));
-        say(find('clock-told'), clock === null ? 'Nobody tells a clock: the displays count from when they were switched on.'
-            : `Rate ${clock.rate}, seed ${clock.seed ?? 'of the displays'}, told by ${this.station.toldBy('clock', clock)}.`);
+        say(find('clock-told'),
+            clock === null ? 'Nobody tells a clock: the displays count from when they were switched on.'
+            : `Rate ${clock.rate}, seed ${clock.seed ?? 'of the displays'}, told by `
+                + `${this.station.toldBy('clock', clock)}.`);
     }
 }

@@ -12,7 +12,8 @@ export class MalfunctionsPanel {
 
     makeRow({name, unit, low, high, usual}, kind) {
         const id = `malfunction-${kind}`, {commands} = this.station;
-        const amount = make('input', {type: 'number', id, min: low, max: high, value: usual, step: unit === 'key' ? 1 : 'any', 'aria-label': `${name}, ${unit}`});
+        const amount = make('input', {type: 'number', id, min: low, max: high, value: usual,
+            step: unit === 'key' ? 1 : 'any', 'aria-label': `${name}, ${unit}`});
         const act = () => {
             const value = unit ? numberOf(amount) : 0;
             if (value === null || Number.isNaN(value)) {
@@ -35,7 +36,9 @@ export class MalfunctionsPanel {
             row.classList.toggle('is-broken', Boolean(told));
             row.querySelector('.break').setAttribute('aria-pressed', String(Boolean(told)));
             row.querySelector('.mend').disabled = !told;
-            say(row.querySelector('.told'), told ? `broken${unit ? `, ${Number(told.amount.toFixed(1))} ${unit}` : ''}, ${this.station.toldBy(`malfunction ${kind}`, told)}` : 'works');
+            const amount = told && unit ? `, ${Number(told.amount.toFixed(1))} ${unit}` : '';
+            const words = told ? `broken${amount}, ${this.station.toldBy(`malfunction ${kind}`, told)}` : 'works';
+            say(row.querySelector('.told'), words);
         });
     }
 }

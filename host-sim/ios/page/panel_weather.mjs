@@ -1,8 +1,9 @@
 /* The panel of weather: four circles of rain, four jammers, the sea and its wind. */
-import {button, find, make, numberOf, rows, say} from './dom.mjs';
+import {button, find, limits, make, numberOf, rows, say} from './dom.mjs';
 import {placeWords} from './geo.mjs';
 
-const FORMS = {rain: [['rain-radius', 'radiusM', 1000], ['rain-rate', 'rateMmH', 1]], jammer: [['jammer-ratio', 'ratioDb', 1]]};
+const FORMS = {rain: [['rain-radius', 'radiusM', 1000], ['rain-rate', 'rateMmH', 1]],
+    jammer: [['jammer-ratio', 'ratioDb', 1]]};
 
 export class WeatherPanel {
     constructor(station) {
@@ -21,7 +22,7 @@ export class WeatherPanel {
         for (const [id, name, unit] of FORMS[what]) {
             const value = numberOf(find(id));
             if (value === null || Number.isNaN(value)) {
-                this.station.report(`${find(id).labels[0].firstChild.textContent.trim()}: ${find(id).min} to ${find(id).max}`);
+                this.station.report(limits(find(id)));
                 find(id).focus();
                 return null;
             }
@@ -53,10 +54,13 @@ export class WeatherPanel {
     render() {
         const {world} = this.station;
         for (const what of ['rain', 'jammer']) {
-            const items = [...world[what].values()].sort((a, b) => a.number - b.number).map((c) => ({...c, key: c.number}));
-            rows(find(`${what}-list`), items, (c) => this.makeRow(what, c.number), (row, c) => this.fillRow(row, what, c));
+            const items = [...world[what].values()].sort((a, b) => a.number - b.number).map((c) =>
+                ({...c, key: c.number}));
+            rows(find(`${what}-list`), items, (c) => this.makeRow(what, c.number),
+                (row, c) => this.fillRow(row, what, c));
         }
-        const told = (thing, words, key) => thing ? `${words(thing.value)}, told by ${this.station.toldBy(key, thing)}` : 'as in the image';
+        const told = (thing, words, key) => thing ? `${words(thing.value)}, told by ${this.station.toldBy(key, thing)}`
+            : 'as in the image';
         say(find('sea-told'), told(world.sea, (state) => `state ${state}`, 'sea'));
         say(find('wind-told'), world.wind ? told(world.wind, (deg) => `from ${deg.toFixed(0)}°`, 'wind') : 'not told');
     }
@@ -65,13 +69,17 @@ export class WeatherPanel {
         const {commands, world, map} = this.station;
         const values = () => this.form(what), held = () => world[what].get(number);
         return make('li', {}, make('span', {class: 'words'}),
-            button('Change', () => values() && held() && commands.circle(what, number, {...held(), ...values()}), {'aria-label': `change ${what} ${number} to the numbers above`}),
-            button('Move', () => held() && this.move(what, number, map.centerPlace), {'aria-label': `move ${what} ${number} to the middle of the map`}),
+            button('Change', () => values() && held() && commands.circle(what, number, {...held(), ...values()}),
+                {'aria-label': `change ${what} ${number} to the numbers above`}),
+            button('Move', () => held() && this.move(what, number, map.centerPlace),
+                {'aria-label': `move ${what} ${number} to the middle of the map`}),
             button('Remove', () => commands.removeCircle(what, number), {'aria-label': `remove ${what} ${number}`}));
     }
 
     fillRow(row, what, circle) {
-        const words = what === 'rain' ? `${circle.rateMmH.toFixed(0)} mm/h, ${(circle.radiusM / 1000).toFixed(1)} km` : `${circle.ratioDb.toFixed(0)} dB`;
-        say(row.querySelector('.words'), `${circle.number}: ${words} at ${placeWords(circle)}, ${this.station.toldBy(`${what} ${circle.number}`, circle)} `);
+        const words = what === 'rain' ? `${circle.rateMmH.toFixed(0)} mm/h, ${(circle.radiusM / 1000).toFixed(1)} km`
+            : `${circle.ratioDb.toFixed(0)} dB`;
+        const by = this.station.toldBy(`${what} ${circle.number}`, circle);
+        say(row.querySelector('.words'), `${circle.number}: ${words} at ${placeWords(circle)}, ${by} `);
     }
 }

@@ -29,12 +29,14 @@ class Station {
         this.commands = new Commands(this.world, this.keeper);
         this.site = site;
         this.makeMap(bounds);
-        this.panels = [new TargetsPanel(this), new WeatherPanel(this), new MalfunctionsPanel(this), new ClockPanel(this),
+        this.panels = [new TargetsPanel(this), new WeatherPanel(this), new MalfunctionsPanel(this),
+            new ClockPanel(this),
             new DisplaysPanel(this, site.displays ?? [])];
         [this.targets, this.weather, , , this.displays] = this.panels;
         this.makeTabs();
         this.setOpen(false);
-        this.link = new Link(this.address('bus'), {frames: (frames) => this.take(frames), refused: (text) => this.report(`the server refuses: ${text}`),
+        this.link = new Link(this.address('bus'), {frames: (frames) => this.take(frames),
+            refused: (text) => this.report(`the server refuses: ${text}`),
             state: (isOpen) => this.setOpen(isOpen)});
         setInterval(() => this.tick(), TICK_MS);
         requestAnimationFrame((ms) => this.draw(ms));
@@ -60,8 +62,11 @@ class Station {
         const maySend = isOpen && this.site.may_send !== false;
         document.body.classList.toggle('is-lost', !isOpen);
         document.querySelectorAll('fieldset.commands').forEach((set) => { set.disabled = !maySend; });
-        say(find('connection'), isOpen ? `Connected to ${this.site.bus ?? 'the bus'}${maySend ? '' : ', listening only'}` : 'NO CONNECTION');
-        say(find('lost'), isOpen ? '' : wasOpen ? 'Connection lost. What is shown is what was, and nothing can be told. Trying again.'
+        say(find('connection'),
+            isOpen ? `Connected to ${this.site.bus ?? 'the bus'}${maySend ? '' : ', listening only'}`
+                : 'NO CONNECTION');
+        say(find('lost'),
+            isOpen ? '' : wasOpen ? 'Connection lost. What is shown is what was, and nothing can be told. Trying again.'
             : 'No connection yet. Trying.');
         if (wasOpen !== undefined && wasOpen !== isOpen) {
             this.world.event(isOpen ? 'connected' : 'connection lost', 'this page');
@@ -109,8 +114,10 @@ class Station {
         this.world.nowUs = Math.max(this.world.nowUs, isPast ? 0 : frame.timeUs);
         for (const fact of this.reader.take(frame)) {
             const isOwn = this.keeper.isOwn(fact);
-            const by = isPast ? null : isOwn ? 'this page' : fact.node === this.node ? 'another page' : `node ${fact.node}`;
-            const isHeard = this.world.take(fact, by), lost = fact.what === 'own' ? null : this.keeper.hear(fact, isHeard);
+            const by = isPast ? null : isOwn ? 'this page' : fact.node === this.node ? 'another page'
+                : `node ${fact.node}`;
+            const isHeard = this.world.take(fact, by), lost = fact.what === 'own' ? null
+                : this.keeper.hear(fact, isHeard);
             if (lost !== null) {
                 this.report(isHeard ? `another instructor has ${lost} now` : `${lost}: the displays hear another node`);
             }
@@ -119,7 +126,8 @@ class Station {
 
     /* Who repeats a thing: for words. */
     toldBy(key, thing) {
-        const who = this.keeper.kept.has(key) ? 'this page' : thing.node === this.node ? 'another page' : `node ${thing.node}`;
+        const who = this.keeper.kept.has(key) ? 'this page' : thing.node === this.node ? 'another page'
+            : `node ${thing.node}`;
         return this.world.isStale(thing) ? `${who}, SILENT` : who;
     }
 
@@ -150,16 +158,19 @@ class Station {
 
     renderOwn() {
         const own = this.world.ownAircraft(), ageUs = own?.ageUs ?? Infinity;
-        const state = !own ? 'No own aircraft on the bus' : ageUs > OWN_DEAD_US ? `Own aircraft LOST, ${(ageUs / 1e6).toFixed(0)} s ago at`
+        const state = !own ? 'No own aircraft on the bus' : ageUs > OWN_DEAD_US
+            ? `Own aircraft LOST, ${(ageUs / 1e6).toFixed(0)} s ago at`
             : ageUs > OWN_STALE_US ? `Own aircraft STALE, ${(ageUs / 1e6).toFixed(1)} s ago at` : 'Own aircraft';
         const parts = own ? [placeWords(own), own.headingDeg === null ? '' : `heading ${own.headingDeg.toFixed(0)}°`,
-            own.heightM === null ? '' : `${own.heightM.toFixed(0)} m`, own.speedMs === null ? '' : `${own.speedMs.toFixed(0)} m/s`] : [];
+            own.heightM === null ? '' : `${own.heightM.toFixed(0)} m`,
+                own.speedMs === null ? '' : `${own.speedMs.toFixed(0)} m/s`] : [];
         say(find('own'), [state, ...parts.filter((words) => words !== '')].join(', ').replace(' at,', ' at'));
         find('own').classList.toggle('is-stale', ageUs > OWN_STALE_US);
         const {world, map} = this;
         const range = (map.canvas.clientWidth * map.metresPerPixel() / NAUTICAL_MILE_M).toFixed(0);
-        say(find('map-words'), `Map of ${range} NM across around ${placeWords(map.centerPlace)}: ${find('own').textContent}; ${world.targets.size} live targets, `
-            + `${world.rain.size} circles of rain, ${world.jammer.size} jammers. The lists beside it have them in words.`);
+        const around = `Map of ${range} NM across around ${placeWords(map.centerPlace)}: ${find('own').textContent}`;
+        say(find('map-words'), `${around}; ${world.targets.size} live targets, ${world.rain.size} circles of rain, `
+            + `${world.jammer.size} jammers. The lists beside it have them in words.`);
     }
 
     renderEvents() {
@@ -170,7 +181,8 @@ class Station {
         this.shownEvent = events.at(-1);
         events.forEach((event) => { event.key ??= this.eventKey = (this.eventKey ?? 0) + 1; });
         const newest = events.slice(-EVENTS_SHOWN).reverse();
-        rows(find('events'), newest, () => make('li', {}, make('time', {}), ' ', make('span', {class: 'what'}), ' ', make('span', {class: 'by'})), (row, event) => {
+        rows(find('events'), newest, () => make('li', {}, make('time', {}), ' ', make('span', {class: 'what'}), ' ',
+            make('span', {class: 'by'})), (row, event) => {
             const utc = new Date(event.busUs / 1000).toISOString().slice(11, 19);
             say(row.querySelector('time'), event.exerciseMs === null ? `${utc} UTC` : clockWords(event.exerciseMs));
             row.querySelector('time').title = `${utc} on the bus`;
@@ -190,15 +202,20 @@ class Station {
 
     makeMap(bounds) {
         this.tool = () => document.querySelector('input[name="tool"]:checked').value;
-        this.map = new MovingMap(find('map'), bounds, {act: (place, handle) => this.act(place, handle), grab: (place, nearM) => this.grab(place, nearM),
-            drop: (handle, place) => this.drop(handle, place), key: (key) => this.mapKey(key), changed: () => this.changed()});
-        const grabbedOf = (what, number) => this.map.grabbed?.what === what && this.map.grabbed.number === number ? this.map.grabbed.place : undefined;
+        this.map = new MovingMap(find('map'), bounds, {act: (place, handle) => this.act(place, handle),
+            grab: (place, nearM) => this.grab(place, nearM),
+            drop: (handle, place) => this.drop(handle, place), key: (key) => this.mapKey(key),
+                changed: () => this.changed()});
+        const grabbedOf = (what, number) => this.map.grabbed?.what === what && this.map.grabbed.number === number
+            ? this.map.grabbed.place : undefined;
         this.layers = [weatherLayer(this.world, grabbedOf), displayLayer(this.world),
-            targetLayer(this.world, {chosen: () => this.targets.chosen, grabbedOf, routeOf: (number) => this.targets.routeOf(number)}), ownLayer(this.world)];
+            targetLayer(this.world, {chosen: () => this.targets.chosen, grabbedOf,
+                routeOf: (number) => this.targets.routeOf(number)}), ownLayer(this.world)];
         this.map.isFollowing = true;
         find('map-follow').checked = true;
         find('map-follow').addEventListener('change', () => { this.map.isFollowing = find('map-follow').checked; });
-        const acts = {'map-in': () => this.map.zoomBy(0.5), 'map-out': () => this.map.zoomBy(-0.5), 'map-whole': () => this.map.wholeMap()};
+        const acts = {'map-in': () => this.map.zoomBy(0.5), 'map-out': () => this.map.zoomBy(-0.5),
+            'map-whole': () => this.map.wholeMap()};
         Object.entries(acts).forEach(([id, act]) => find(id).addEventListener('click', act));
     }
 
@@ -212,7 +229,8 @@ class Station {
         if (tool === 'look') {
             this.targets.choose(handle?.what === 'target' ? handle.number : null);
         } else if (this.link && this.isOpen && this.site.may_send !== false) {
-            const acts = {target: () => this.targets.place(place), route: () => this.targets.waypoint(place), rain: () => this.weather.place('rain', place),
+            const acts = {target: () => this.targets.place(place), route: () => this.targets.waypoint(place),
+                rain: () => this.weather.place('rain', place),
                 jammer: () => this.weather.place('jammer', place), cursor: () => this.displays.at('cursor', place),
                 steer: () => this.displays.at('steer', place), patch: () => this.displays.at('patch', place)};
             acts[tool]();
@@ -231,8 +249,10 @@ class Station {
 
     /* Keys of the map beside those that move it. True where the key meant something. */
     mapKey(key) {
-        const acts = {m: () => this.targets.chosen !== null && this.targets.move(this.targets.chosen, this.map.centerPlace),
-            Delete: () => this.targets.remove(), Escape: () => { document.querySelector('input[name="tool"][value="look"]').checked = true; }};
+        const acts = {m: () => this.targets.chosen !== null && this.targets.move(this.targets.chosen,
+            this.map.centerPlace),
+            Delete: () => this.targets.remove(),
+                Escape: () => { document.querySelector('input[name="tool"][value="look"]').checked = true; }};
         acts[key]?.();
         return key in acts;
     }
@@ -280,7 +300,8 @@ class Station {
             tab.addEventListener('click', () => show(tab));
             tab.addEventListener('keydown', (event) => {
                 const step = {ArrowRight: 1, ArrowLeft: -1}[event.key];
-                const to = step ? tabs[(at + step + tabs.length) % tabs.length] : {Home: tabs[0], End: tabs.at(-1)}[event.key];
+                const to = step ? tabs[(at + step + tabs.length) % tabs.length]
+                    : {Home: tabs[0], End: tabs.at(-1)}[event.key];
                 if (to) {
                     event.preventDefault();
                     show(to);

@@ -7,7 +7,8 @@ const STEP_MOST_S = 5; // a jump of the exercise's clock moves no target
 export class Target {
     /* `of`: number, kind, latitude, longitude, and what else targetFrames takes. */
     constructor(of) {
-        Object.assign(this, {speedMs: 0, courseDeg: 0, heightM: null, rcsDbsm: null, signature: 0, route: [], isLoop: false}, of);
+        Object.assign(this, {speedMs: 0, courseDeg: 0, heightM: null, rcsDbsm: null, signature: 0, route: [],
+            isLoop: false}, of);
         this.route = [...this.route];
         this.aim();
     }

@@ -17,8 +17,10 @@ export function subjectOf(fact) {
 
 export class World {
     constructor() {
-        Object.assign(this, {nowUs: 0, own: {}, track: [], targets: new Map(), rain: new Map(), jammer: new Map(), sea: null,
-            wind: null, clock: null, malfunctions: new Map(), displays: new Map(), events: [], holders: new Map(), noticed: new Map()});
+        Object.assign(this, {nowUs: 0, own: {}, track: [], targets: new Map(), rain: new Map(), jammer: new Map(),
+            sea: null,
+            wind: null, clock: null, malfunctions: new Map(), displays: new Map(), events: [], holders: new Map(),
+                noticed: new Map()});
     }
 
     /* ---- times ---- */
@@ -36,12 +38,14 @@ export class World {
     /* Seconds that the exercise went on since a thing was told. */
     secondsSince(thing) {
         const nowMs = this.exerciseMs();
-        return Math.max(nowMs === null || thing.exerciseMs === null ? (this.nowUs - thing.timeUs) / 1e6 : (nowMs - thing.exerciseMs) / 1000, 0);
+        return Math.max(nowMs === null || thing.exerciseMs === null ? (this.nowUs - thing.timeUs) / 1e6
+            : (nowMs - thing.exerciseMs) / 1000, 0);
     }
 
     /* Where a target has got to by its dead reckoning. */
     reckoned(target) {
-        return target.speedMs > 0 ? ahead(target, target.courseDeg, target.speedMs * this.secondsSince(target)) : target;
+        return target.speedMs > 0 ? ahead(target, target.courseDeg, target.speedMs * this.secondsSince(target))
+            : target;
     }
 
     /* ---- own aircraft ---- */
@@ -63,9 +67,11 @@ export class World {
         if (!latitude || !longitude) {
             return null;
         }
-        const fresh = (name) => this.own[name] && this.nowUs - this.own[name].timeUs < OWN_DEAD_US ? this.own[name].value : null;
+        const fresh = (name) => this.own[name] && this.nowUs - this.own[name].timeUs < OWN_DEAD_US
+            ? this.own[name].value : null;
         const headingDeg = fresh('headingDeg') ?? fresh('trackDeg');
-        return {latitude: latitude.value, longitude: longitude.value, headingDeg, heightM: fresh('heightM'), speedMs: fresh('speedMs'),
+        return {latitude: latitude.value, longitude: longitude.value, headingDeg, heightM: fresh('heightM'),
+            speedMs: fresh('speedMs'),
             ageUs: this.nowUs - Math.min(latitude.timeUs, longitude.timeUs)};
     }
 
@@ -93,7 +99,8 @@ export class World {
         }
         const told = {...fact, exerciseMs: this.exerciseMs(fact.timeUs), by};
         const [name] = fact.what.split('-');
-        const takers = {target: 'takeTarget', rain: 'takeCircle', jammer: 'takeCircle', weather: 'clearWeather', sea: 'takeSea', wind: 'takeSea',
+        const takers = {target: 'takeTarget', rain: 'takeCircle', jammer: 'takeCircle', weather: 'clearWeather',
+            sea: 'takeSea', wind: 'takeSea',
             exercise: 'takeClock', malfunction: 'takeMalfunction', display: 'takeDisplay', control: 'takeControl'};
         this[takers[name]](told, by);
         return true;
@@ -125,22 +132,29 @@ export class World {
     /* What is new of a target; null where it goes on as reckoned. */
     targetWords(t, before) {
         const name = `target ${t.number}, ${KINDS[t.kind]}`;
-        const motion = t.speedMs > 0 ? `${t.speedMs.toFixed(0)} m/s on ${((t.courseDeg + 360) % 360).toFixed(0)} degrees` : 'stands';
+        const motion = t.speedMs > 0
+            ? `${t.speedMs.toFixed(0)} m/s on ${((t.courseDeg + 360) % 360).toFixed(0)} degrees` : 'stands';
         if (!before) {
             return `${name}, placed at ${placeWords(t)}, ${motion}`;
         }
-        const wasAt = ahead(before, before.courseDeg, before.speedMs * Math.max((t.exerciseMs ?? t.timeUs / 1000) - (before.exerciseMs ?? before.timeUs / 1000), 0) / 1000);
+        const clockMs = (thing) => thing.exerciseMs ?? thing.timeUs / 1000;
+        const seconds = Math.max(clockMs(t) - clockMs(before), 0) / 1000;
+        const wasAt = ahead(before, before.courseDeg, before.speedMs * seconds);
         const hasMoved = between(wasAt, t).distanceM > 50 + 0.5 * Math.max(before.speedMs, t.speedMs);
         const hasTurned = Math.hypot(t.eastMs - before.eastMs, t.northMs - before.northMs) > 0.2 + 0.02 * t.speedMs;
         const isOther = ['kind', 'heightM', 'rcsDbsm', 'signature'].some((key) => t[key] !== before[key]);
-        return hasMoved ? `${name}, moved to ${placeWords(t)}, ${motion}` : hasTurned ? `${name}, ${motion}` : isOther ? `${name}, changed` : null;
+        return hasMoved ? `${name}, moved to ${placeWords(t)}, ${motion}` : hasTurned ? `${name}, ${motion}` : isOther
+            ? `${name}, changed` : null;
     }
 
     takeCircle(circle, by) {
         const held = this[circle.what], before = held.get(circle.number), isRain = circle.what === 'rain';
-        const words = isRain ? `${circle.rateMmH.toFixed(0)} mm/h within ${(circle.radiusM / 1000).toFixed(1)} km of ${placeWords(circle)}`
-            : `${circle.ratioDb.toFixed(0)} dB at ${placeWords(circle)}`;
-        const same = before && ['latitude', 'longitude', 'radiusM', 'rateMmH', 'ratioDb'].every((key) => before[key] === circle[key]);
+        const at = placeWords(circle);
+        const words = isRain
+            ? `${circle.rateMmH.toFixed(0)} mm/h within ${(circle.radiusM / 1000).toFixed(1)} km of ${at}`
+            : `${circle.ratioDb.toFixed(0)} dB at ${at}`;
+        const same = before && ['latitude', 'longitude', 'radiusM', 'rateMmH',
+            'ratioDb'].every((key) => before[key] === circle[key]);
         this.event(same ? null : `${circle.what} ${circle.number}: ${words}`, by);
         held.set(circle.number, circle);
     }
@@ -158,17 +172,20 @@ export class World {
 
     takeSea(told, by) {
         const before = this[told.what];
-        const words = told.what === 'sea' ? `sea state ${told.value}` : `wind over the sea from ${told.value.toFixed(0)} degrees`;
+        const words = told.what === 'sea' ? `sea state ${told.value}`
+            : `wind over the sea from ${told.value.toFixed(0)} degrees`;
         this.event(before?.value === told.value ? null : words, by);
         this[told.what] = told;
     }
 
     takeClock(told, by) {
-        const before = this.clock ?? {timeMs: null, rate: 1, seed: null, timeUs: told.timeUs}, wasMs = this.exerciseMs(told.timeUs);
+        const before = this.clock ?? {timeMs: null, rate: 1, seed: null, timeUs: told.timeUs},
+            wasMs = this.exerciseMs(told.timeUs);
         this.clock = {...before, node: told.node, by, timeUs: told.timeUs, timeMs: wasMs};
         if (told.what === 'exercise-rate') {
             this.clock.rate = told.rate;
-            this.event(told.rate === before.rate ? null : told.rate === 0 ? 'exercise frozen' : `exercise runs, rate ${told.rate}`, by);
+            this.event(told.rate === before.rate ? null : told.rate === 0 ? 'exercise frozen'
+                : `exercise runs, rate ${told.rate}`, by);
         } else if (told.what === 'exercise-seed') {
             this.clock.seed = told.seed;
             this.event(told.seed === before.seed ? null : `seed ${told.seed}`, by);
@@ -181,13 +198,15 @@ export class World {
 
     takeMalfunction(told, by) {
         if (told.what === 'malfunction-clear') {
-            const ended = told.kind === ALL ? [...this.malfunctions.keys()] : this.malfunctions.has(told.kind) ? [told.kind] : [];
+            const ended = told.kind === ALL ? [...this.malfunctions.keys()] : this.malfunctions.has(told.kind)
+                ? [told.kind] : [];
             ended.forEach((kind) => this.malfunctions.delete(kind));
             this.event(ended.length ? `mended: ${ended.map((kind) => MALFUNCTIONS[kind].name).join(', ')}` : null, by);
             return;
         }
         const of = MALFUNCTIONS[told.kind], before = this.malfunctions.get(told.kind);
-        this.event(before?.amount === told.amount ? null : `broken: ${of.name}${of.unit ? `, ${told.amount.toFixed(0)} ${of.unit}` : ''}`, by);
+        this.event(before?.amount === told.amount ? null
+            : `broken: ${of.name}${of.unit ? `, ${told.amount.toFixed(0)} ${of.unit}` : ''}`, by);
         this.malfunctions.set(told.kind, told);
     }
 
@@ -209,13 +228,16 @@ export class World {
     }
 
     takeControl({item, values, service, node}, by) {
-        const names = {1532: () => SWITCHES[values[0]] ?? values[0], 1531: () => `key ${values[0]} ${service === 1 ? 'down' : 'up'}`,
+        const names = {1532: () => SWITCHES[values[0]] ?? values[0],
+            1531: () => `key ${values[0]} ${service === 1 ? 'down' : 'up'}`,
             1536: () => 'mode and field', 1537: () => `range ${values[0]} NM`, 1538: () => `sector width ${values[0]}`,
-            1539: () => `gain ${values[0]} dB`, 1541: () => 'cursor placed', 1543: () => service === 1 ? 'steerpoint of the bus' : 'steerpoint',
+            1539: () => `gain ${values[0]} dB`, 1541: () => 'cursor placed',
+                1543: () => service === 1 ? 'steerpoint of the bus' : 'steerpoint',
             1546: () => `patch of ${values[0] / 1000} m`};
         const words = names[item]?.();
         const isNews = words && !(item === 1531 && service !== 1);
-        this.event(isNews ? `${by === null || by.startsWith('node') ? `display of node ${node}` : 'control'}: ${words}` : null, by);
+        this.event(isNews ? `${by === null || by.startsWith('node') ? `display of node ${node}` : 'control'}: ${words}`
+            : null, by);
     }
 
     /* ---- time goes on ---- */
