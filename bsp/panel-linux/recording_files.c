@@ -46,6 +46,7 @@ static uint32_t session_of(const char *name)
 
 struct stock {
     uint64_t bytes;          /* of all parts */
+    uint32_t files;          /* parts */
     uint32_t oldest, newest; /* sessions; NO_SESSION: there is none */
 };
 
@@ -72,6 +73,7 @@ static struct stock take_stock(const struct recording_files *f)
             continue;
         }
         s.bytes += (uint64_t)about.st_size;
+        s.files++;
         s.oldest = session < s.oldest ? session : s.oldest;
         s.newest = s.newest == NO_SESSION || session > s.newest ? session : s.newest;
     }
@@ -106,7 +108,8 @@ static bool is_room(const struct recording_files *f, const struct stock *s, uint
     struct statvfs about;
     const bool is_known = fstatvfs(f->folder_fd, &about) == 0;
     const uint64_t available = is_known ? (uint64_t)about.f_bavail * about.f_frsize : UINT64_MAX;
-    return s->bytes + wanted <= f->limits.bytes && f->limits.free_bytes + wanted <= available;
+    return s->files < RECORDING_FILES_MAX && s->bytes + wanted <= f->limits.bytes &&
+           f->limits.free_bytes + wanted <= available;
 }
 
 /* Remove the oldest sessions until there is room. False if the present one alone has too little. */

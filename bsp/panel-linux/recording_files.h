@@ -18,6 +18,7 @@
 
 enum {
     RECORDING_PARTS_MAX = 1000,
+    RECORDING_FILES_MAX = 2000, /* in the folder: a panel that restarts for ever makes small ones */
     RECORDING_SYNC_US = 500000, /* what was written is brought to the medium so often */
     RECORDING_REST_US = 50000,  /* the thread looks for lines so often */
     RECORDING_RING_BYTES = 1 << 20

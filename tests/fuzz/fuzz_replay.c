@@ -34,6 +34,9 @@ static void ask_ports(const struct lm_board *b, uint32_t call)
     if (b->can->receive(b->can->ctx, &frame) == 1) {
         FUZZ_ASSERT(frame.length <= 8);
     }
+    if (b->can_2 && b->can_2->receive(b->can_2->ctx, &frame) == 1) {
+        FUZZ_ASSERT(frame.length <= 8);
+    }
     if (b->can->send) {
         (void)b->can->send(b->can->ctx, &frame);
     }

@@ -232,6 +232,19 @@ TEST(the_oldest_sessions_go_as_a_whole_when_the_limit_is_reached)
     land(f);
 }
 
+/* A panel that restarts for ever would fill the folder with small files, and be slow to start. */
+TEST(sessions_that_are_many_and_short_are_removed_too)
+{
+    struct flight *f = prepare("many");
+    support_run("mkdir %s && cd %s && seq -f flight-%%05g-000.log 1 %d | xargs touch", f->folder,
+                f->folder, RECORDING_FILES_MAX + 20);
+    take_off(f, &small);
+    assert_null(f->recording.trouble);
+    assert_int_equal(f->recording.files.session, RECORDING_FILES_MAX + 21);
+    assert_in_range(files(f, "flight-"), RECORDING_FILES_MAX - 2, RECORDING_FILES_MAX);
+    land(f);
+}
+
 /* Whichever of the two limits it is. */
 TEST(a_session_that_alone_fills_the_room_ends_with_a_word)
 {
