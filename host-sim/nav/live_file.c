@@ -85,23 +85,29 @@ static int read_numbers(const struct db_text_file *f, char **word, int words, do
     return 0;
 }
 
+/* The time of the first point of a route, which has no speed. */
+static int set_first_time(const struct db_text_file *f, struct nav_live_point *p, bool is_speed,
+                          double value)
+{
+    p->at_s = value;
+    return is_speed ? db_text_error(f, "write at SECONDS", "the first place needs a time") : 0;
+}
+
 /* The time of a point, and whether it can be reached from the one before. */
 static int set_time(const struct db_text_file *f, const struct nav_live_point *before,
                     struct nav_live_point *p, bool is_speed, double value)
 {
-    const double way_m = before ? metres_between(before, p) : 0;
-    if (is_speed && (before == NULL || value <= 0 || way_m < 0.01)) {
+    const double way_m = metres_between(before, p);
+    if (is_speed && (value <= 0 || way_m < 0.01)) {
         return db_text_error(f, "write at SECONDS",
-                             before == NULL
-                                 ? "the first place needs a time"
-                                 : "a speed needs to be above 0, and another place to go to");
+                             "a speed needs to be above 0, and another place to go to");
     }
     p->at_s = is_speed ? before->at_s + way_m / value : value;
-    if (before && p->at_s <= before->at_s) {
+    if (p->at_s <= before->at_s) {
         return db_text_error(f, "put the places in the order of their times",
                              "%g s is not after the place before, %g s", p->at_s, before->at_s);
     }
-    if (before && way_m > NAV_LIVE_SPEED_MOST_MS * (p->at_s - before->at_s)) {
+    if (way_m > NAV_LIVE_SPEED_MOST_MS * (p->at_s - before->at_s)) {
         return db_text_error(f, "give it more time", "%.0f m in %.3g s are above %d m/s", way_m,
                              p->at_s - before->at_s, NAV_LIVE_SPEED_MOST_MS);
     }
@@ -112,7 +118,7 @@ static int add_point(const struct db_text_file *f, struct nav_live *l, char **wo
 {
     struct nav_live_item *t = current(l);
     const bool is_speed = strcmp(word[0], "speed") == 0;
-    double value[4];
+    double value[4] = {0};
     if (t == NULL) {
         return db_text_error(f, "begin with target NUMBER KIND", "belongs to no target");
     }
@@ -130,12 +136,12 @@ static int add_point(const struct db_text_file *f, struct nav_live *l, char **wo
         return db_text_error(f, "give all places of the target a height, or none",
                              "one place of a target has a height and one has none");
     }
-    if (set_time(f, before, p, is_speed, value[0]) != 0) {
+    const int status = before ? set_time(f, before, p, is_speed, value[0])
+                              : set_first_time(f, p, is_speed, value[0]);
+    if (status != 0) {
         return -1;
     }
-    if (before == NULL) {
-        t->from_s = p->at_s;
-    }
+    t->from_s = before ? t->from_s : p->at_s;
     t->height_m = p->height_m;
     t->points++;
     l->point_count++;

@@ -161,30 +161,25 @@ static void print(const char *what, double *ms, int count)
     printf("  %-34s median %7.1f   99 %% %7.1f\n", what, ms[count / 2], ms[(count - 1) * 99 / 100]);
 }
 
-int main(int argc, char **argv)
+/* A display in flight, hung at a bus of its own. */
+static struct rig *hang_rig(struct lm_board *board, struct lm_can *can)
+{
+    struct rig *r = fly_rig();
+    *board = *r->unit.board;
+    *can = *board->can;
+    bus.flight = board->can;
+    can->receive = receive;
+    can->ctx = NULL;
+    board->can = can;
+    r->unit.board = board;
+    r->bus.speed_m_s = 0;
+    run(r, 8);
+    return r;
+}
+
+static int measure_all(struct rig *r, struct dis_gateway *g, int entities)
 {
     static double accepted_ms[ENTITIES_MOST], painted_ms[ENTITIES_MOST], shown_ms[ENTITIES_MOST];
-    static struct dis_kinds kinds;
-    const int wanted = argc > 1 ? atoi(argv[1]) : 100;
-    const int entities = wanted > 0 && wanted <= ENTITIES_MOST ? wanted : ENTITIES_MOST;
-    struct rig *r = fly_rig();
-    struct lm_board board = *r->unit.board;
-    struct lm_can can = *board.can;
-    bus.flight = board.can;
-    can.receive = receive;
-    can.ctx = NULL;
-    board.can = &can;
-    r->unit.board = &board;
-    r->bus.speed_m_s = 0;
-    const struct dis_settings settings = dis_settings_usual();
-    const struct dis_sink sink = {send_frame, NULL};
-    struct dis_gateway *g =
-        dis_kinds_read_builtin(&kinds) == 0 ? dis_gateway_new(&settings, &kinds, &sink) : NULL;
-    if (g == NULL) {
-        return 1;
-    }
-    srand(1);
-    run(r, 8);
     int count = 0;
     for (int i = 0; i < entities; i++) {
         const struct seen seen = measure(r, g, (uint16_t)(i + 1));
@@ -197,8 +192,7 @@ int main(int argc, char **argv)
     const struct lm_sector *s = &r->unit.picture.sector;
     printf(
         "A new entity of DIS, from its state to the display (ground map, a sweep of %.2f s; "
-        "made-up "
-        "time): ms\n",
+        "made-up time): ms\n",
         s->lines * lm_sector_line_us(s) / 1e6);
     if (count == 0) {
         printf("  none of %d was seen\n", entities);
@@ -208,7 +202,27 @@ int main(int argc, char **argv)
     print("in the first line that draws it", painted_ms, count);
     print("on the glass", shown_ms, count);
     printf("  (%d of %d entities)\n", count, entities);
+    return 0;
+}
+
+int main(int argc, char **argv)
+{
+    static struct dis_kinds kinds;
+    struct lm_board board;
+    struct lm_can can;
+    const int wanted = argc > 1 ? atoi(argv[1]) : 100;
+    const int entities = wanted > 0 && wanted <= ENTITIES_MOST ? wanted : ENTITIES_MOST;
+    const struct dis_settings settings = dis_settings_usual();
+    const struct dis_sink sink = {send_frame, NULL};
+    struct dis_gateway *g =
+        dis_kinds_read_builtin(&kinds) == 0 ? dis_gateway_new(&settings, &kinds, &sink) : NULL;
+    if (g == NULL) {
+        return 1;
+    }
+    srand(1);
+    struct rig *r = hang_rig(&board, &can);
+    const int status = measure_all(r, g, entities);
     dis_gateway_free(g);
     free_rig(r);
-    return 0;
+    return status;
 }
