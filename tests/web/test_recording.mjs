@@ -86,7 +86,7 @@ test('a recording in parts is one', async () => {
 });
 
 test('back and on again by moments, within their memory, the pictures are the same', async () => {
-    const most = 24 << 20, moments = new Moments(most, 100000);
+    const most = 40 << 20, moments = new Moments(most, 100000);
     const replay = await opened(new LogLines(fileSource(`${tmp}/2.log`))), sums = sumsOf(2);
     do {
         moments.keep(replay);

@@ -289,34 +289,18 @@ export class Replay extends Unit {
 
     /* ---- moments: the state of module and log, to go back to ---- */
 
-    /* Pages that are those of `before`, if given, are shared with it. */
-    moment(before) {
-        const pages = copyPages(new Uint8Array(this.calls.memory.buffer), before?.pages);
-        return {pages, at: this.lines.at, us: this.nowUs, pictures: this.value('pictures'), isOver: this.isOver};
-    }
-
     /* Go back, or on, to a moment of this recording, also one that another replay of it had. */
     restore({pages, at, us, pictures, isOver}) {
-        const memory = new Uint8Array(this.calls.memory.buffer);
-        pages.forEach((page, n) => {
-            if (page) {
-                memory.set(page, n * BLOCK);
-            } else {
-                memory.fill(0, n * BLOCK, (n + 1) * BLOCK);
-            }
-        });
+        const words = new Int32Array(this.calls.memory.buffer);
+        pages.forEach((page, n) => unpack(page, words.subarray(n * PAGE, (n + 1) * PAGE)));
         [this.lines.at, this.nowUs, this.isOver, this.shown] = [at, us, isOver, pictures];
     }
 }
 
-function isZero(words) {
-    for (let i = 0; i < words.length; i++) {
-        if (words[i] !== 0) {
-            return false;
-        }
-    }
-    return true;
-}
+/* ---- pages of memory: null is all zero; of up to 256 different words, as pictures have, each is a
+ * byte ---- */
+
+const PAGE = 16384; // words: 64 KiB
 
 function areSame(a, b) {
     for (let i = 0; i < a.length; i++) {
@@ -327,28 +311,75 @@ function areSame(a, b) {
     return true;
 }
 
-/* Memory by pages of 64 KiB; null: all zero. */
-function copyPages(memory, before) {
-    const pages = [];
-    for (let at = 0; at < memory.length; at += BLOCK) {
-        const words = new Int32Array(memory.buffer, at, BLOCK / 4), old = before?.[pages.length];
-        const oldWords = old && new Int32Array(old.buffer);
-        pages.push(oldWords && areSame(words, oldWords) ? old : isZero(words) ? null : memory.slice(at, at + BLOCK));
+function pack(page) {
+    const places = new Map(), bytes = new Uint8Array(page.length);
+    for (let i = 0, last = ~page[0], place = 0; i < page.length; i++) {
+        if (page[i] !== last) {
+            last = page[i];
+            place = places.get(last) ?? places.size;
+            if (place === 256) {
+                return {words: page.slice(), size: 4 * page.length};
+            }
+            places.set(last, place);
+        }
+        bytes[i] = place;
     }
-    return pages;
+    return {words: Int32Array.from(places.keys()), bytes, size: bytes.length + 4 * places.size};
+}
+
+function unpack(page, to) {
+    if (!page) {
+        to.fill(0);
+    } else if (!page.bytes) {
+        to.set(page.words);
+    } else {
+        const {words, bytes} = page;
+        for (let i = 0; i < to.length; i++) {
+            to[i] = words[bytes[i]];
+        }
+    }
+}
+
+function hashOf(page) {
+    let hash = 0;
+    for (let i = 0; i < page.length; i++) {
+        hash = Math.imul(hash ^ page[i], 0x01000193);
+    }
+    return hash;
 }
 
 /* Moments of a flight within so many bytes: where they would take more, every second one goes, and
- * later ones are twice as far apart. */
+ * later ones are twice as far apart. Pages are shared where they are equal: with the moment before,
+ * and, as those of the last pictures, within a moment. */
 export class Moments {
-    constructor(mostBytes, apartUs = 2e6) {
+    constructor(mostBytes, apartUs = 4e6) {
         this.mostBytes = mostBytes;
         this.apartUs = apartUs;
         this.all = [];
+        this.mirror = null; // memory as of the moment kept last
+        this.pages = [];    // of it
     }
 
     get bytes() {
-        return new Set(this.all.flatMap(({pages}) => pages).filter(Boolean)).size * BLOCK;
+        const pages = new Set(this.all.flatMap((moment) => moment.pages));
+        return [...pages].reduce((sum, page) => sum + (page?.size ?? 0), this.mirror?.byteLength ?? 0);
+    }
+
+    copy(words) {
+        const seen = new Map(), part = (all, n) => all.subarray(n * PAGE, (n + 1) * PAGE);
+        this.mirror ??= new Int32Array(words.length);
+        this.pages = Array.from({length: words.length / PAGE}, (_, n) => {
+            const page = part(words, n), before = part(this.mirror, n);
+            if (areSame(page, before)) {
+                return this.pages[n] ?? null;
+            }
+            before.set(page);
+            const hash = hashOf(page), twin = seen.get(hash);
+            const packed = twin && areSame(page, part(this.mirror, twin.n)) ? twin.packed : pack(page);
+            seen.set(hash, {n, packed});
+            return packed;
+        });
+        return this.pages;
     }
 
     /* Keep where a replay stands, if it is time for it. */
@@ -357,7 +388,8 @@ export class Moments {
         if (last && replay.nowUs < last.us + this.apartUs) {
             return;
         }
-        this.all.push(replay.moment(last));
+        this.all.push({pages: this.copy(new Int32Array(replay.calls.memory.buffer)), at: replay.lines.at, us: replay.nowUs,
+            pictures: replay.value('pictures'), isOver: replay.isOver});
         while (this.all.length > 2 && this.bytes > this.mostBytes) {
             this.all = this.all.filter((_, n) => n % 2 === 0);
             this.apartUs *= 2;

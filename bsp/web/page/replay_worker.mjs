@@ -7,7 +7,7 @@ import {FeedLines, joined, LogLines, Moments, Replay, spanOf, waitingFileSource,
 import {Marks} from './marks.mjs';
 
 const SLICE_MS = 12, PICTURE_MS = 15, TELL_MS = 200, BACK_MS = 250;
-const MOMENTS_BYTES = 256 << 20;
+const MOMENTS_BYTES = 512 << 20;
 
 const say = (what, rest = {}, transfer = []) => postMessage({say: what, ...rest}, transfer);
 const sourceOf = ({file, url}) => file ? waitingFileSource(file) : waitingHttpSource(url);
