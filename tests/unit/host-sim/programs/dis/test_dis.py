@@ -328,21 +328,27 @@ def a_cigi_entity_moves_stops_and_goes(work):
             packets += [entity_control(order, 6, (46.1, 11.1, 1), kind=7, clamp=1, yaw=90.0), rate_control(order, 6, (15, 0, 0), 1),
                         entity_control(order, 7, (46.1, 11.2, 0), kind=13, clamp=1),
                         entity_control(order, 9, (46.1, 11.3, 0), kind=77)]
+        if n <= 60:  # and then it is not told any more
+            packets += [entity_control(order, 10, (46.3, 11 + 50 * t / 77000, 0), kind=7, clamp=1)]
         if n == 120:
             packets += [entity_control(order, 7, (0, 0, 0), kind=13, state=2)]
         messages.append((100 + t, ig_control(order, int(t * 1e5)) + b"".join(packets)))
     write_capture(path, messages)
-    figures, frames = report("--cigi", "--kinds", kinds, "--capture", path)
+    figures, frames = report("--cigi", "--kinds", kinds, "--capture", path, "--timeout", "1")
     sets = sets_of(frames)
     fighter = [s for s in sets if s["kind"] == 7]
     speeds = [(s["time"], 0.05 * math.hypot(*s.get(1813, (0, 0)))) for s in fighter]
     assert all(abs(v - 200) < 1 for t, v in speeds if 100.5 < t < 102), speeds
     assert speeds[-1][1] < 1 and abs(fighter[-1]["latitude"] - 46.2 - 400 / 111170) < 1e-5, (speeds, fighter[-1])
-    (lorry, *more) = [s for s in sets if s["kind"] == 3]
+    silent = [s for s in sets if s["kind"] == 3 and s["latitude"] > 46.25]
+    assert any(abs(0.05 * s[1813][0] - 50) < 1 for s in silent if 1813 in s and 100.5 < s["time"] < 101.3), silent
+    assert silent[-1]["time"] > 101.6 and not any(silent[-1].get(1813, (0, 0))), silent
+    assert abs(silent[-1]["longitude"] - 11 - 50 / 77000) < 1e-6, silent[-1]
+    (lorry, *more) = [s for s in sets if s["kind"] == 3 and s["latitude"] < 46.25]
     assert any(abs(0.05 * s[1813][0] - 15) < 0.06 and abs(s[1813][1]) <= 2 for s in (lorry, *more)) and "height" not in lorry, lorry
     assert more[-1]["time"] > 102 and figures["entities_deactivated"] == 1 and figures["entities_timed_out"] == 0
     assert figures["types_without_rule"] == ["0.2.77.0.0.0.0"] and figures["left_out"]["attached"] == 181
-    assert figures["left_out"]["ownship"] == 181 and figures["targets_most"] == 3
+    assert figures["left_out"]["ownship"] == 181 and figures["targets_most"] == 4
 
 
 def cigi_that_is_none_is_refused_and_counted(work):
