@@ -318,6 +318,24 @@ test('a thing that another node tells is not heard, and the page says so', () =>
     assert.deepEqual(a.keeper.keys, []);
 });
 
+test('what the server refuses is not asked for again', () => {
+    const bus = new Bus(), a = bus.page(0.2);
+    a.commands.sea(3);
+    bus.run(1);
+    a.commands.placeTarget(CAR);
+    bus.queue.length = 0; // it never comes back
+    assert.deepEqual(a.keeper.dropUnheard(), ['target 0']);
+    assert.deepEqual(a.keeper.keys, ['sea']);
+});
+
+test('where the time of the bus is set back all begins anew', () => {
+    const bus = new Bus(), a = bus.page(0.2);
+    a.commands.placeTarget(CAR);
+    bus.run(2);
+    a.world.restart(5e5);
+    assert.deepEqual([a.world.targets.size, a.world.clock, a.world.nowUs, a.world.events.length], [0, null, 5e5, 2]);
+});
+
 test('message codes of a group go on by one, whichever page tells', () => {
     const bus = new Bus(), a = bus.page(0.2), b = bus.page(0.7);
     a.commands.placeTarget(CAR);

@@ -116,7 +116,8 @@ class Page:
 
     def reset(self):
         """Nothing is told; the whole map is seen."""
-        self.js("const c = station.commands; c.removeAllTargets(); c.fairWeather(); c.mendAll(); station.map.wholeMap()")
+        self.js("const c = station.commands; c.removeAllTargets(); c.fairWeather(); c.mendAll();"
+                "station.map.wholeMap()")
         self.b.until("((w) => w.targets.size + w.rain.size + w.jammer.size + w.malfunctions.size === 0)(station.world)")
         self.tool("look")
 
@@ -487,6 +488,21 @@ def stale_navigation_and_a_lost_connection_are_plain(p, _):
     p.b.until("document.getElementById('events').textContent.includes('connection lost')")
 
 
+def a_page_that_may_only_listen_tells_nothing(p, _):
+    place(p)
+    listener = Page(p.b.url)
+    try:
+        listener.b.get()
+        listener.b.until("globalThis.station?.isOpen && station.world.targets.size === 1")
+        listener.js("station.site.may_send = false; station.setOpen(true)")
+        assert not listener.b.find("freeze").is_enabled() and "listening only" in listener.b.find("connection").text
+        p.js("station.keeper.kept.clear(); station.keeper.orphans = () => []")
+        listener.wait("targets.size === 0")  # after ten seconds: it did not keep it
+        p.js("delete station.keeper.orphans")
+    finally:
+        listener.b.driver.quit()
+
+
 def the_keyboard_alone_is_enough(p, g):
     p.start()
     for panel in ("targets", "weather", "malfunctions", "clock", "displays"):
@@ -594,7 +610,8 @@ TESTS = [a_target_is_placed_and_stands_on_the_glass, a_target_that_is_dragged_mo
          every_key_of_the_bezel_is_obeyed, the_picture_is_held_and_released, mode_range_width_and_gain_are_obeyed,
          cursor_steerpoint_and_patch_go_where_the_map_says, designate_drop_slew_and_knob_are_obeyed,
          the_clock_freezes_runs_jumps_and_has_a_seed, what_cannot_be_is_said_and_not_sent, two_instructors_agree,
-         stale_navigation_and_a_lost_connection_are_plain, the_keyboard_alone_is_enough,
+         stale_navigation_and_a_lost_connection_are_plain, a_page_that_may_only_listen_tells_nothing,
+         the_keyboard_alone_is_enough,
          fingers_pan_zoom_and_place_on_a_tablet, the_page_fits_and_is_calm_where_motion_is_not_wanted,
          the_page_asks_no_other_server_and_has_no_error]
 

@@ -95,12 +95,20 @@ export class Keeper {
             this.codes.set(groupOf(Number(fact.keys[0].split('#')[0])), fact.code);
         }
         if (isOwn) {
+            Object.assign(this.kept.get(key) ?? {}, {hasCome: true});
             return isHeard ? null : this.giveUp(key);
         }
         if (fact.node !== this.node) {
             return null;
         }
         return key === null ? this.hearRemoval(fact) : this.hearOther(key);
+    }
+
+    /* Keep nothing that never came back. Returns the keys. */
+    dropUnheard() {
+        const keys = [...this.kept].filter(([, item]) => !item.hasCome).map(([key]) => key);
+        keys.forEach((key) => this.kept.delete(key));
+        return keys;
     }
 
     giveUp(key) {

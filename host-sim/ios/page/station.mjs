@@ -1,7 +1,7 @@
 /* The instructor's page. It says what the bus says, and asks for nothing but by frames of the bus. */
 import {Commands} from './commands.mjs';
 import {find, make, rows, say} from './dom.mjs';
-import {Reader, STATION_NODE} from './frames.mjs';
+import {ID, Reader, STATION_NODE} from './frames.mjs';
 import {clockWords, NAUTICAL_MILE_M, placeWords} from './geo.mjs';
 import {Keeper} from './keeper.mjs';
 import {displayLayer, handleAt, ownLayer, targetLayer, weatherLayer} from './layers.mjs';
@@ -12,7 +12,7 @@ import {DisplaysPanel} from './panel_displays.mjs';
 import {MalfunctionsPanel} from './panel_malfunctions.mjs';
 import {TargetsPanel} from './panel_targets.mjs';
 import {WeatherPanel} from './panel_weather.mjs';
-import {OWN_DEAD_US, OWN_STALE_US, World} from './world.mjs';
+import {DEAD_US, OWN_DEAD_US, OWN_STALE_US, World} from './world.mjs';
 
 const TICK_MS = 50, RENDER_MS = 200, DRAW_MS = {calm: 1000, usual: 100}, MESSAGE_MS = 8000;
 const CLOCK_STEP_US = 2e6, SNAPSHOT_END = 0x7ff, EVENTS_SHOWN = 200;
@@ -36,7 +36,7 @@ class Station {
         this.makeTabs();
         this.setOpen(false);
         this.link = new Link(this.address('bus'), {frames: (frames) => this.take(frames),
-            refused: (text) => this.report(`the server refuses: ${text}`),
+            refused: (text) => this.refused(text),
             state: (isOpen) => this.setOpen(isOpen)});
         setInterval(() => this.tick(), TICK_MS);
         requestAnimationFrame((ms) => this.draw(ms));
@@ -59,7 +59,7 @@ class Station {
     setOpen(isOpen) {
         const wasOpen = this.isOpen;
         this.isOpen = isOpen;
-        const maySend = isOpen && this.site.may_send !== false;
+        const maySend = this.maySend();
         document.body.classList.toggle('is-lost', !isOpen);
         document.querySelectorAll('fieldset.commands').forEach((set) => { set.disabled = !maySend; });
         say(find('connection'),
@@ -71,6 +71,16 @@ class Station {
         if (wasOpen !== undefined && wasOpen !== isOpen) {
             this.world.event(isOpen ? 'connected' : 'connection lost', 'this page');
         }
+    }
+
+    maySend() {
+        return this.isOpen && this.site.may_send !== false;
+    }
+
+    /* What the server does not put on the bus is not asked for again. */
+    refused(text) {
+        const keys = this.keeper.dropUnheard();
+        this.report(`the server refuses${keys.length > 0 ? ` ${keys.join(', ')}` : ''}: ${text}`);
     }
 
     send(lines) {
@@ -100,14 +110,20 @@ class Station {
     /* The bus's clock, of the stamps: they come late, never early. */
     follow(stampUs) {
         const offsetUs = stampUs - 1000 * performance.now();
+        if (this.offsetUs !== null && this.offsetUs - offsetUs > CLOCK_STEP_US) {
+            this.world.restart(stampUs); // a log that begins anew
+        }
         if (this.offsetUs === null || offsetUs > this.offsetUs || this.offsetUs - offsetUs > CLOCK_STEP_US) {
             this.offsetUs = offsetUs;
         }
     }
 
-    /* The snapshot is heard in the order in which it was on the bus. */
+    /* The snapshot is heard in the order in which it was on the bus; what the displays have dropped is left out. */
     endSnapshot() {
-        this.past.splice(0).sort((a, b) => a.timeUs - b.timeUs).forEach((frame) => this.hear(frame, true));
+        const nowUs = this.offsetUs + 1000 * performance.now();
+        const isAlive = ({id, timeUs}) => nowUs - timeUs < DEAD_US || (id >= ID.exerciseTime && id <= ID.exerciseSeed);
+        const past = this.past.splice(0).filter(isAlive).sort((a, b) => a.timeUs - b.timeUs);
+        past.forEach((frame) => this.hear(frame, true));
     }
 
     hear(frame, isPast) {
@@ -138,7 +154,9 @@ class Station {
             return;
         }
         this.world.tick(this.offsetUs + 1000 * performance.now());
-        this.commands.tick();
+        if (this.maySend()) {
+            this.commands.tick();
+        }
         if (performance.now() - (this.renderedMs ?? -Infinity) > RENDER_MS) {
             this.render();
         }
@@ -228,7 +246,7 @@ class Station {
         const tool = this.tool();
         if (tool === 'look') {
             this.targets.choose(handle?.what === 'target' ? handle.number : null);
-        } else if (this.link && this.isOpen && this.site.may_send !== false) {
+        } else if (this.maySend()) {
             const acts = {target: () => this.targets.place(place), route: () => this.targets.waypoint(place),
                 rain: () => this.weather.place('rain', place),
                 jammer: () => this.weather.place('jammer', place), cursor: () => this.displays.at('cursor', place),

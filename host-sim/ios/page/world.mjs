@@ -23,6 +23,14 @@ export class World {
                 noticed: new Map()});
     }
 
+    /* The bus's clock was set back: what was told before says nothing about now. */
+    restart(nowUs) {
+        const {events, noticed} = this;
+        Object.assign(this, new World(), {events, nowUs});
+        noticed.clear();
+        this.event('the time on the bus was set back: all begins anew', 'this page');
+    }
+
     /* ---- times ---- */
 
     /* Milliseconds of the exercise, or null while nobody has told. */
