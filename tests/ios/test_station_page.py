@@ -21,8 +21,8 @@ except ImportError:
 BUILD = pathlib.Path(os.environ.get("BUILD", "build/bench-linux"))
 TMP = BUILD / "tmp/ios"
 SITE = TMP / "site"
+IOS = os.environ.get("IOS")  # landmass-ios in place of the bus of the tests; it has no navigation then
 OUT = TMP / "bus.log"
-STATION = 31
 NORTH = (46.12, 11.0)       # ahead of the aircraft, a third of the way up the glass
 FARTHER = (46.3, 11.0)
 SIDE = (46.05, 11.15)        # where a patch can be taken
@@ -54,9 +54,18 @@ class Page:
 
     def start(self):
         self.b.get()
-        self.b.until("globalThis.station?.isOpen && station.world.ownAircraft()")
-        self.js("station.map.wholeMap(); station.map.isFollowing = false")
+        self.b.until(f"globalThis.station?.isOpen && {'true' if IOS else 'station.world.ownAircraft()'}")
+        self.js("station.map.wholeMap(); station.map.isFollowing = false; station.ownLines = [];"
+                "const {link} = station, take = link.take.bind(link), isOwn = (line) => line.includes('#1F');"
+                "link.take = (text) => { station.ownLines.push(...text.split('\\n').filter(isOwn)); take(text); }")
         return self
+
+    def mark(self):
+        return self.js("return station.ownLines.length")
+
+    def since(self, mark):
+        """What came back from the bus since a mark: ID#DATA of the pages' node."""
+        return [line.split()[2] for line in self.js(f"return station.ownLines.slice({mark})") if " past " not in line]
 
     def js(self, words):
         return self.b.driver.execute_script(words)
@@ -103,12 +112,11 @@ class Page:
     def told(self, act, *ids):
         """Frames of these identifiers that an act puts on the bus; no repeat comes between."""
         self.js("station.keeper.kept.forEach((item) => { item.sentMs = performance.now(); })")
-        before = OUT.stat().st_size
+        mark = self.mark()
         act()
         end, wanted = time.monotonic() + 10, set(ids)
         while time.monotonic() < end:
-            frames = [line.split()[2] for line in OUT.read_text()[before:].splitlines() if line.count(" ") == 2]
-            own = [f for f in frames if f[4:6] == f"{STATION:02X}" and int(f[:3], 16) in wanted]
+            own = [f for f in self.since(mark) if int(f[:3], 16) in wanted]
             if {int(f[:3], 16) for f in own} == wanted:
                 return own[:len(ids)]
             time.sleep(0.03)
@@ -323,10 +331,10 @@ def every_key_of_the_bezel_is_obeyed(p, g):
 
 
 def both_of(p, key):
-    before = OUT.stat().st_size
+    mark = p.mark()
     key.click()
     for _ in range(200):
-        own = [line.split()[2] for line in OUT.read_text()[before:].splitlines() if " 5FB#1F" in line]
+        own = [f for f in p.since(mark) if f.startswith("5FB")]
         if len(own) == 2:
             return own
         time.sleep(0.02)
@@ -381,18 +389,17 @@ def designate_drop_slew_and_knob_are_obeyed(p, g):
     assert g.fly(cursor, designate)["said"][1519][0] == 1 and g.fly(cursor, designate, drop)["said"][1519][0] == 0
     for way, item, sign in (("1,0", 1511, 1), ("-1,0", 1511, -1), ("0,1", 1510, 1), ("0,-1", 1510, -1)):
         button = p.b.driver.find_element("css selector", f"[data-slew='{way}']")
-        before = OUT.stat().st_size
+        mark = p.mark()
         web.ActionChains(p.b.driver).click_and_hold(button).pause(0.2).release().perform()
         time.sleep(0.3)
-        own = [line.split()[2] for line in OUT.read_text()[before:].splitlines() if " 5FE#1F" in line
-            or " 5FF#1F" in line]
+        own = [f for f in p.since(mark) if f.startswith(("5FE", "5FF"))]
         assert len(own) == 4, own
         flight, still = g.fly(own[:2], own[2:])["said"], g.fly()["said"]
         assert sign * (flight[item][0] - still[item][0]) > 10000, (way, flight[item], still[item])
-    before = OUT.stat().st_size
+    mark = p.mark()
     p.js("const k = document.getElementById('control-knob'); k.value = 1000; k.dispatchEvent(new Event('change'))")
     time.sleep(0.3)
-    knob = [line.split()[2] for line in OUT.read_text()[before:].splitlines() if " 5FD#1F" in line]
+    knob = [f for f in p.since(mark) if f.startswith("5FD")]
     assert g.fly(knob)["picture"].mean() > g.fly()["picture"].mean()
 
 
@@ -431,11 +438,11 @@ def the_clock_freezes_runs_jumps_and_has_a_seed(p, g):
 def what_cannot_be_is_said_and_not_sent(p, _):
     p.tab("weather")
     p.fill("rain-rate", 500)
-    before = OUT.read_text().count(" 708#1F")
+    mark = p.mark()
     p.click("rain-place")
     assert "1 to 150" in p.b.find("message").text
     time.sleep(0.3)
-    assert OUT.read_text().count(" 708#1F") == before
+    assert not [f for f in p.since(mark) if f.startswith("708")]
     p.fill("rain-rate", 30)
     p.tab("clock")
     p.fill("clock-time", "noon")
@@ -473,7 +480,7 @@ def two_instructors_agree(p, _):
 
 def stale_navigation_and_a_lost_connection_are_plain(p, _):
     server = p.server
-    if "IOS" not in os.environ:
+    if not IOS:
         server.child.send_signal(signal.SIGUSR1)
         p.b.until("document.getElementById('own').textContent.includes('STALE')")
         p.b.until("document.getElementById('own').textContent.includes('LOST')")
@@ -625,9 +632,8 @@ class Server:
 
     def start(self):
         """That of the tests; or landmass-ios, where IOS names the program."""
-        if "IOS" in os.environ:
-            words = [os.environ["IOS"], "--db", TMP / "scene.lmdb", "--bus", self.log, "--log-out", OUT, "--site", SITE,
-                     "--port", self.port]
+        if IOS:
+            words = [IOS, "--image", TMP / "scene.lmdb", "--site", BUILD / "ios", "--port", self.port]
             self.child = subprocess.Popen([*map(str, words)], stdout=subprocess.PIPE, text=True)
             self.url = next(word for word in self.child.stdout.readline().split() if word.startswith("http"))
         else:
