@@ -146,9 +146,109 @@ def the_cursor_moves_and_designate_draws_a_patch(b):
     b.until("landmass.unit.value('mode') === 3")
     b.find("drop").click()
     b.until("landmass.unit.value('mode') !== 3")
+    b.driver.execute_script("landmass.told = 0; const {calls} = landmass.unit; "
+                            "landmass.unit.calls = {...calls, designate: () => { landmass.told++; calls.designate(); }}")
     b.find("designate").click()
+    assert b.ask("landmass.told") == 1
+
+
+def hold_aside(begin, end, b):
+    """Hold the cursor to the left until it is where the antenna can look at: off the track."""
+    begin()
+    b.until("(landmass.unit.value('cursorLatitude') | 0) * 360 / 2 ** 32 > 46.02")
+    end()
+
+
+def pad(b, axes, pressed=()):
+    """A gamepad of the test's, as navigator.getGamepads would show it, for two frames of the page."""
+    buttons = [n in pressed for n in range(4)]
+    b.driver.execute_async_script(
+        "const [axes, pressed, done] = arguments; const buttons = pressed.map((p) => ({pressed: p, value: Number(p)}));"
+        "navigator.getGamepads = () => [null, {axes, buttons}];"
+        "requestAnimationFrame(() => requestAnimationFrame(() => requestAnimationFrame(() => done())))", axes, buttons)
+
+
+def a_gamepad_moves_the_cursor_flies_and_designates(b):
+    b.start()
+    before = value(b, "cursorLongitude")
+    pad(b, [0, -1, 0, 0])
+    b.until(f"landmass.unit.value('cursorLongitude') > {before}")
+    pad(b, [0.1, 0.1, 0.1, -0.1])  # within the dead way: all rests
+    rests = value(b, "cursorLongitude")
     time.sleep(0.3)
-    b.find("description")
+    assert value(b, "cursorLongitude") == rests
+    pad(b, [0, 0, 0.5, -0.5])
+    assert b.ask("[landmass.bus.bankDeg, landmass.bus.climbMs]") == [30, 20]
+    pad(b, [0, 0, 0, 0])
+    assert b.ask("[landmass.bus.bankDeg, landmass.bus.climbMs]") == [0, 0]
+    b.press("l")
+    pad(b, [0, 0, 0, 0])  # a stick at rest leaves the flight to the keys
+    assert b.ask("landmass.bus.bankDeg") == 5
+    b.find("by-hand").click()
+    b.ask("Object.assign(landmass.bus, {latitude: 45.95, longitude: 11}) && 0")
+    b.until("landmass.unit.warnings().length === 0")
+    hold_aside(lambda: pad(b, [-1, 0, 0, 0]), lambda: pad(b, [0, 0, 0, 0]), b)
+    pad(b, [0, 0, 0, 0], [0])
+    b.until("landmass.unit.value('mode') === 3")
+    pad(b, [0, 0, 0, 0], [0])  # held: one designation
+    pad(b, [0, 0, 0, 0], [1])
+    b.until("landmass.unit.value('mode') !== 3")
+    b.driver.execute_script("delete navigator.getGamepads")
+
+
+def a_finger_holds_a_key_and_flies(b):
+    b.start()
+    b.driver.execute_script("landmass.told = []; const {calls} = landmass.unit; "
+                            "landmass.unit.calls = {...calls, button: (...a) => { landmass.told.push(a); calls.button(...a); }}")
+    b.driver.execute_cdp_cmd("Emulation.setTouchEmulationEnabled", {"enabled": True, "maxTouchPoints": 5})
+
+    def touch(kind, *places):
+        b.driver.execute_cdp_cmd("Input.dispatchTouchEvent", {
+            "type": kind, "touchPoints": [{"x": x, "y": y, "id": n} for n, (x, y) in enumerate(places)]})
+
+    def middle(selector):
+        box = b.ask(f"(() => {{ const e = document.querySelector(\"{selector}\"); e.scrollIntoView({{block: 'center'}}); "
+                    "const r = e.getBoundingClientRect(); return [r.x + r.width / 2, r.y + r.height / 2]; })()")
+        return box
+    try:
+        place = middle("[data-button='12']")
+        touch("touchStart", place)
+        b.until("landmass.told.length === 1")
+        assert b.ask("landmass.told") == [[True, 12]], b.ask("landmass.told")
+        touch("touchEnd")
+        b.until("landmass.unit.value('isRadarPage') === 0")
+        assert b.ask("landmass.told") == [[True, 12], [False, 12]], b.ask("landmass.told")
+        touch("touchStart", middle("[data-fly='right']"))
+        touch("touchEnd")
+        b.until("landmass.bus.bankDeg === 5")
+    finally:
+        b.driver.execute_cdp_cmd("Emulation.setTouchEmulationEnabled", {"enabled": False})
+
+
+def everything_has_a_name_and_comes_in_order(b):
+    b.start()
+    nodes = b.driver.execute_cdp_cmd("Accessibility.getFullAXTree", {})["nodes"]
+    named = {"button", "textbox", "slider", "img", "image", "region"}
+    seen = [(n["role"]["value"], n.get("name", {}).get("value", "")) for n in nodes if not n["ignored"] and "role" in n]
+    nameless = [role for role, name in seen if role in named and not name.strip()]
+    assert not nameless and len([role for role, _ in seen if role == "button"]) >= 45, (nameless, len(seen))
+    names = [name for role, name in seen if role == "button"]
+    assert len(set(names)) == len(names), "two buttons of one name"
+    levels = b.ask("[...document.querySelectorAll('h1, h2, h3')].map((h) => Number(h.tagName[1]))")
+    assert levels[0] == 1 and levels.count(1) == 1 and all(y <= x + 1 for x, y in zip(levels, levels[1:])), levels
+    assert b.ask("document.documentElement.lang") == "en" and b.ask("document.title")
+    ids = b.ask("[...document.querySelectorAll('[id]')].map((e) => e.id)")
+    assert len(set(ids)) == len(ids)
+    assert b.ask("[...document.querySelectorAll('[tabindex]')].every((e) => e.tabIndex === 0)")
+    b.driver.execute_script("document.activeElement.blur(); window.getSelection().removeAllRanges()")
+    order = []
+    for _ in range(60):
+        b.press(Keys.TAB)
+        order.append(b.ask("[...document.querySelectorAll('*')].indexOf(document.activeElement)"))
+        assert b.ask("document.activeElement === document.body || "
+                     "getComputedStyle(document.activeElement).outlineStyle !== 'none'"), "a focus that nobody sees"
+    falls = sum(y < x for x, y in zip(order, order[1:]))
+    assert falls <= 1, f"the focus goes back {falls} times"  # once round, at the end of the page
 
 
 def the_keyboard_alone_reaches_everything(b):
@@ -237,7 +337,9 @@ def a_missing_image_is_said(b):
 
 TESTS = [golden_pictures_are_those_of_the_pc, the_page_flies_and_asks_no_other_server,
          every_key_of_the_bezel_acts_by_mouse, pages_open_by_key_and_by_button,
-         the_cursor_moves_and_designate_draws_a_patch, the_keyboard_alone_reaches_everything,
+         the_cursor_moves_and_designate_draws_a_patch, a_gamepad_moves_the_cursor_flies_and_designates,
+         a_finger_holds_a_key_and_flies, everything_has_a_name_and_comes_in_order,
+         the_keyboard_alone_reaches_everything,
          the_flight_turns_and_pauses_by_key, a_log_flies_and_a_bad_one_is_refused,
          a_recording_is_flown_again_and_one_of_another_image_is_refused, a_live_bus_flies,
          a_missing_image_is_said]

@@ -2,7 +2,7 @@
  * drop. A browser shows a gamepad once one of its buttons was pressed. */
 
 const DEAD = 0.2; // of a stick's way
-const state = {x: 0, y: 0, buttons: []};
+const state = {x: 0, y: 0, isTurning: false, isClimbing: false, buttons: []};
 
 const outside = (deflection) => (Math.abs(deflection ?? 0) < DEAD ? 0 : deflection);
 
@@ -18,9 +18,14 @@ export function gamepadActs(page) {
         Object.assign(state, {x, y});
     }
     const [turn, climb] = [outside(pad.axes[2]), outside(pad.axes[3])];
-    page.bus.bankDeg = turn || page.bus.isTurnedByPad ? 60 * turn : page.bus.bankDeg;
-    page.bus.climbMs = climb || page.bus.isClimbedByPad ? -40 * climb : page.bus.climbMs;
-    Object.assign(page.bus, {isTurnedByPad: turn !== 0, isClimbedByPad: climb !== 0});
+    /* A stick that rests leaves the flight to others; one that has just come to rest levels it. */
+    if (turn || state.isTurning) {
+        page.bus.bankDeg = 60 * turn;
+    }
+    if (climb || state.isClimbing) {
+        page.bus.climbMs = -40 * climb + 0;
+    }
+    Object.assign(state, {isTurning: turn !== 0, isClimbing: climb !== 0});
     const buttons = pad.buttons.map((b) => b.pressed);
     const isNew = (n) => buttons[n] && !state.buttons[n];
     if (isNew(0)) {
