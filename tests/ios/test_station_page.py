@@ -55,6 +55,7 @@ class Page:
     def start(self):
         self.b.get()
         self.b.until(f"globalThis.station?.isOpen && {'true' if IOS else 'station.world.ownAircraft()'}")
+        self.js(f"Object.assign(station.map.bounds, {json.dumps(BOUNDS)}, {{zoom_max: station.map.bounds.zoom_max}})")
         self.js("station.map.wholeMap(); station.map.isFollowing = false; station.ownLines = [];"
                 "const {link} = station, take = link.take.bind(link), isOwn = (line) => line.includes('#1F');"
                 "link.take = (text) => { station.ownLines.push(...text.split('\\n').filter(isOwn)); take(text); }")
@@ -634,8 +635,8 @@ class Server:
         """That of the tests; or landmass-ios, where IOS names the program."""
         if IOS:
             words = [IOS, "--image", TMP / "scene.lmdb", "--site", BUILD / "ios", "--port", self.port]
-            self.child = subprocess.Popen([*map(str, words)], stdout=subprocess.PIPE, text=True)
-            self.url = next(word for word in self.child.stdout.readline().split() if word.startswith("http"))
+            self.child = subprocess.Popen([*map(str, words)], stderr=subprocess.PIPE, text=True)
+            self.url = next(word for word in self.child.stderr.readline().split() if word.startswith("http"))
         else:
             self.child, self.url = web.node(ROOT / "tests/ios/loop.mjs", SITE, self.log, OUT, self.port)
         self.port = self.url.split(":")[2].strip("/")
