@@ -118,6 +118,8 @@ static void member_of(struct bytes *b, struct lm_control *c)
         break;
     case LM_CONTROL_DESIGNATE:
     case LM_CONTROL_DROP:
+    case LM_CONTROL_TRACK:
+    case LM_CONTROL_RANGING:
         break;
     }
 }
@@ -134,7 +136,7 @@ uint32_t record_control_bytes(const struct lm_control *control, uint8_t bytes[RE
 bool record_control_read(struct lm_control *control, const uint8_t *bytes, uint32_t count)
 {
     memset(control, 0, sizeof *control);
-    if (count == 0 || bytes[0] > LM_CONTROL_DROP) {
+    if (count == 0 || bytes[0] >= LM_CONTROL_KINDS) {
         return false;
     }
     struct bytes b = {.from = bytes, .at = 1, .end = count};

@@ -52,7 +52,7 @@ static const struct row rows[LM_CONTROL_ITEMS] = {
 
 /* First item of the controls of a kind, and what tells those of one item apart: the service code of
  * a key, the value of a switch. A kind of zeros is not told. */
-enum { KINDS = LM_CONTROL_DROP + 1 };
+enum { KINDS = LM_CONTROL_KINDS };
 
 static const struct kind {
     uint8_t first, act;
@@ -62,6 +62,8 @@ static const struct kind {
     [LM_CONTROL_DESIGNATE] = {LM_CONTROL_ITEM_SWITCH, LM_CONTROL_SWITCH_DESIGNATE},
     [LM_CONTROL_DROP] = {LM_CONTROL_ITEM_SWITCH, LM_CONTROL_SWITCH_DROP},
     [LM_CONTROL_FREEZE] = {LM_CONTROL_ITEM_SWITCH, LM_CONTROL_SWITCH_FREEZE},
+    [LM_CONTROL_TRACK] = {LM_CONTROL_ITEM_SWITCH, LM_CONTROL_SWITCH_TRACK},
+    [LM_CONTROL_RANGING] = {LM_CONTROL_ITEM_SWITCH, LM_CONTROL_SWITCH_RANGING},
     [LM_CONTROL_KNOB] = {LM_CONTROL_ITEM_KNOB, 0},
     [LM_CONTROL_SLEW] = {LM_CONTROL_ITEM_SLEW_X, 0},
     [LM_CONTROL_SECTOR] = {LM_CONTROL_ITEM_SECTOR, 0},
@@ -261,7 +263,7 @@ static bool is_well_formed(const struct lm_can_frame *frame, uint32_t item)
                           frame->data[1] == rows[item].type;
     return is_sound && (item != LM_CONTROL_ITEM_SWITCH ||
                         (frame->data[HEADER_BYTES] >= LM_CONTROL_SWITCH_DESIGNATE &&
-                         frame->data[HEADER_BYTES] <= LM_CONTROL_SWITCH_RELEASE));
+                         frame->data[HEADER_BYTES] <= LM_CONTROL_SWITCH_RANGING));
 }
 
 void lm_canas_control_take(struct lm_canas_control *c, const struct lm_can_frame *frame)

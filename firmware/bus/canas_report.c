@@ -30,12 +30,23 @@ const struct lm_report_row lm_report_rows[LM_REPORT_ITEMS] = {
     [LM_REPORT_GAIN] =             ROW("gain",                1522, CHAR,   STATE,  "dB",  1),
     [LM_REPORT_PATCH] =            ROW("patch",               1523, UCHAR3, STATE,  "state percent refusal", 1),
     [LM_REPORT_PATCH_CELL] =       ROW("patch cell",          1524, LONG,   STATE,  "m",   THOUSANDTHS),
+    [LM_REPORT_TRACK] =            ROW("track",               1550, UCHAR4, TRACKED, "kind state loss number", 1),
+    [LM_REPORT_TRACK_LATITUDE] =   ROW("track latitude",      1551, LONG,   TRACKED, "deg", TEN_MILLIONTHS),
+    [LM_REPORT_TRACK_LONGITUDE] =  ROW("track longitude",     1552, LONG,   TRACKED, "deg", TEN_MILLIONTHS),
+    [LM_REPORT_TRACK_ELEVATION] =  ROW("track elevation",     1553, LONG,   TRACKED, "m",   THOUSANDTHS),
+    [LM_REPORT_TRACK_BEARING] =    ROW("track bearing",       1554, LONG,   TRACKED, "deg", TEN_MILLIONTHS),
+    [LM_REPORT_TRACK_SLANT] =      ROW("track slant range",   1555, LONG,   TRACKED, "m",   THOUSANDTHS),
+    [LM_REPORT_TRACK_RATE] =       ROW("track range rate",    1556, LONG,   TRACKED, "m/s", THOUSANDTHS),
+    [LM_REPORT_TRACK_SPEED] =      ROW("track ground speed",  1557, LONG,   TRACKED, "m/s", THOUSANDTHS),
+    [LM_REPORT_TRACK_COURSE] =     ROW("track course",        1558, LONG,   TRACKED, "deg", TEN_MILLIONTHS),
 };
 /* clang-format on */
 
-/* The cursor is followed by other displays; a place and a state by people. UNSOURCED. */
-const uint32_t lm_report_period_us[LM_REPORT_SETS] = {
-    [LM_REPORT_CURSOR] = 100000, [LM_REPORT_PLACE] = 500000, [LM_REPORT_STATE] = 200000};
+/* The cursor and a track are followed by others; a place and a state by people. UNSOURCED. */
+const uint32_t lm_report_period_us[LM_REPORT_SETS] = {[LM_REPORT_CURSOR] = 100000,
+                                                      [LM_REPORT_PLACE] = 500000,
+                                                      [LM_REPORT_STATE] = 200000,
+                                                      [LM_REPORT_TRACKED] = 100000};
 
 void lm_canas_report_init(struct lm_canas_report *r, uint8_t node)
 {

@@ -205,15 +205,64 @@ static void draw_cursor(const struct lm_glass *g, const struct lm_symbols *s)
     }
 }
 
+static void draw_diamond(const struct lm_pen *pen, struct lm_point at, int32_t reach)
+{
+    for (int32_t side = -1; side <= 1; side += 2) {
+        line(pen, at.x - reach, at.y, at.x, at.y + side * reach);
+        line(pen, at.x, at.y + side * reach, at.x + reach, at.y);
+    }
+}
+
 /* The steerpoint: a diamond. */
 static void draw_steerpoint(const struct lm_glass *g, struct lm_point at)
 {
     const struct lm_pen pen = picture_pen(g);
-    const int32_t reach = part_of_half(g, 65) / 2;
+    draw_diamond(&pen, at, part_of_half(g, 65) / 2);
+}
+
+/* A Maltese cross: four triangles whose tips meet a little beyond the middle [FreeFalcon,
+ * bscope.cpp, AGRangingDisplay]. */
+static void draw_maltese(const struct lm_glass *g, const struct lm_pen *pen, struct lm_point at)
+{
+    const int32_t far = part_of_half(g, 45), aside = part_of_half(g, 15);
     for (int32_t side = -1; side <= 1; side += 2) {
-        line(&pen, at.x - reach, at.y, at.x, at.y + side * reach);
-        line(&pen, at.x, at.y + side * reach, at.x + reach, at.y);
+        const int32_t x = at.x + side * far, y = at.y + side * far;
+        line(pen, at.x - aside, y, at.x + aside, y);
+        line(pen, at.x - aside, y, at.x, at.y);
+        line(pen, at.x + aside, y, at.x, at.y);
+        line(pen, x, at.y - aside, x, at.y + aside);
+        line(pen, x, at.y - aside, at.x, at.y);
+        line(pen, x, at.y + aside, at.x, at.y);
     }
+}
+
+/* What is tracked: a filled diamond, hollow while it coasts, with the course of a mover. */
+static void draw_track(const struct lm_glass *g, const struct lm_symbols *s)
+{
+    const struct lm_pen pen = picture_pen(g);
+    const int32_t reach = part_of_half(g, 65);
+    if (s->track_shape == LM_SHAPE_CROSS) {
+        draw_maltese(g, &pen, s->track);
+        return;
+    }
+    draw_diamond(&pen, s->track, reach);
+    for (int32_t y = 1 - reach; s->track_shape == LM_SHAPE_FILLED && y < reach; y += pen.line_px) {
+        const int32_t half = reach - (y < 0 ? -y : y);
+        lm_draw_box(&pen, s->track.x - half, s->track.y + y, 2 * half + 1, pen.line_px);
+    }
+    if (s->has_track_course) {
+        lm_draw_line(&pen, s->track,
+                     lm_ray_end(lm_pixel_middle(s->track), s->track_course, 2 * reach));
+    }
+}
+
+/* What is said of the track, in the lower left corner of the frame. */
+static void write_track(const struct lm_glass *g, const struct lm_symbols *s)
+{
+    const struct lm_pen pen = lm_symbol_pen(g);
+    lm_write(&pen, beside_labels(g, &pen) + 2 * pen.dot_px,
+             g->frame->top_px + g->frame->height_px - 2 * lm_row_px(&pen), s->track_words.words,
+             g->palette->ink);
 }
 
 /* The ownship: a circle with a line twice its radius long in the direction of its heading. */
@@ -400,5 +449,11 @@ void lm_overlay_symbols(const struct lm_glass *g, const struct lm_symbols *s)
     }
     if (s->is_ownship_shown) {
         draw_ownship(g, s);
+    }
+    if (s->track_shape != LM_SHAPE_NONE) {
+        draw_track(g, s);
+    }
+    if (s->track_words.length != 0) {
+        write_track(g, s);
     }
 }

@@ -354,8 +354,10 @@ void lm_scan_line_prefetch(struct lm_tile_cache *tiles, uint8_t lod,
     }
 }
 
-int32_t lm_scan_elevation(struct lm_tile_cache *tiles, uint8_t lod, struct lm_position position,
-                          int32_t fallback_m_q10)
+/* Ground at a place, from the resident tile or its nearest resident ancestor. False if there is
+ * none. */
+static bool find_ground(struct lm_tile_cache *tiles, uint8_t lod, struct lm_position position,
+                        struct lm_ground *ground)
 {
     const uint32_t side_log2 = (uint32_t)tiles->db->shift0 + lod + LM_TILE_CELLS_LOG2;
     const uint64_t from_pole = (uint64_t)(position.latitude + FX_BAM_90) << 32;
@@ -365,10 +367,24 @@ int32_t lm_scan_elevation(struct lm_tile_cache *tiles, uint8_t lod, struct lm_po
     const struct lm_tile *tile =
         lm_tile_cache_get(tiles, lod, (uint32_t)(north >> 32), (uint32_t)(east >> 32));
     if (!tile) {
-        return fallback_m_q10;
+        return false;
     }
     const uint32_t generations = tile->lod - (uint32_t)lod;
-    return lm_tile_ground(tile, (uint32_t)(north >> generations), (uint32_t)(east >> generations))
-               .elevation_m_q14 >>
-           4;
+    *ground =
+        lm_tile_ground(tile, (uint32_t)(north >> generations), (uint32_t)(east >> generations));
+    return true;
+}
+
+int32_t lm_scan_elevation(struct lm_tile_cache *tiles, uint8_t lod, struct lm_position position,
+                          int32_t fallback_m_q10)
+{
+    struct lm_ground ground;
+    return find_ground(tiles, lod, position, &ground) ? ground.elevation_m_q14 >> 4
+                                                      : fallback_m_q10;
+}
+
+uint16_t lm_scan_cell(struct lm_tile_cache *tiles, uint8_t lod, struct lm_position position)
+{
+    struct lm_ground ground;
+    return find_ground(tiles, lod, position, &ground) ? (uint16_t)ground.cell : LM_CELL_NONE;
 }

@@ -263,6 +263,11 @@ void lm_page_note_patch(struct lm_page *p, const struct lm_sar_command *patch)
     p->is_plan = patch->is_plan;
 }
 
+void lm_page_note_track(struct lm_page *p, uint8_t kind)
+{
+    p->track = kind;
+}
+
 void lm_page_note_tilt(struct lm_page *p, int32_t tilt)
 {
     if (!p->is_tilt_manual) {

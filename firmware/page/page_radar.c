@@ -222,6 +222,32 @@ static uint32_t press_cursor_zero(struct lm_page *p, int32_t step)
     return LM_EFFECT_CURSOR_HOME;
 }
 
+/* ---- the track ---- */
+
+static bool is_tracking(const struct lm_page *p)
+{
+    return p->track != 0;
+}
+
+/* Blank without a track, as in the sources of the format. */
+static void label_track(const struct lm_page *p, struct lm_label *label)
+{
+    static const char kinds[4][5] = {"", "FTT", "GMTT", "AGR"};
+    lm_label_set(label, kinds[p->track & 3], "");
+}
+
+static uint32_t press_track(struct lm_page *p, int32_t step)
+{
+    (void)p, (void)step;
+    return LM_EFFECT_TRACK;
+}
+
+static uint32_t hold_track(struct lm_page *p)
+{
+    (void)p;
+    return LM_EFFECT_RANGING;
+}
+
 /* ---- declutter ---- */
 
 static bool is_decluttered(const struct lm_page *p)
@@ -282,7 +308,13 @@ static const struct lm_page_key keys[] = {
      .starts_hidden = true,
      .press = press_cell,
      .step = 1},
-    {.osb = 17}, /* free */
+    {.osb = 17,
+     .text = label_track,
+     .is_shown = is_tracking,
+     .is_on = is_tracking,
+     .stays_when_on = true,
+     .press = press_track,
+     .hold = hold_track},
     {.osb = 18, .text = label_azimuth, .is_shown = has_azimuth, .press = press_azimuth, .step = 1},
     {.osb = 19, .words = LM_GLYPH_DOWN, .is_shown = has_smaller, .press = press_range, .step = -1},
     {.osb = 20,

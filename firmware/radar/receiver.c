@@ -78,6 +78,26 @@ static void set_bins(struct lm_receiver *r, const struct lm_radar *radar, int32_
     }
 }
 
+/* The area is that of the two-way beam as a rectangle, by the pulse, by the grazing. Logarithms are
+ * within 2^6 in Q16, and five of them within 2^25. */
+void lm_receiver_floor_at(struct lm_receiver_floor *f, const struct lm_radar *radar,
+                          uint32_t slant_m_q8, int32_t height_m_q10, uint8_t range_index,
+                          enum lm_fov fov)
+{
+    const struct lm_range_row *range = &radar->range[range_index];
+    const uint32_t held_m_q8 = fx_max_u32(slant_m_q8, 1);
+    const int32_t range_q16 = fx_log2_q16(held_m_q8);
+    const int32_t grazing_q16 = log2_grazing_q16(held_m_q8, height_m_q10);
+    const int32_t beam_q16 = fx_log2_q16(radar->antenna.azimuth_beam) + FX_LOG2_TWO_PI_Q16 -
+                             (32 << 16) + LM_LOG2_TWO_WAY_Q16;
+    const uint64_t pulse_m_q24 = (uint64_t)range->pulse_ns[fov] * LM_HALF_LIGHT_M_PER_NS_Q24;
+    f->noise_db_q8 = noise_at_one_db_q8(&radar->receiver, range, fov) +
+                     fx_db_q8_of_log2_q16(3 * range_q16 - grazing_q16) +
+                     air_loss_db_q8(&radar->receiver, held_m_q8);
+    f->area_db_q8 = fx_db_q8_of_log2_q16(range_q16 + beam_q16 + fx_log2_q16_u64(pulse_m_q24) +
+                                         grazing_q16 - ((8 + 24) << 16));
+}
+
 /* Compute the weights of a pulse of `length_q16` bins: equal for bins that it covers wholly, less
  * for the two bins that it ends in. */
 static void set_pulse(struct lm_receiver *r, uint64_t length_q16)

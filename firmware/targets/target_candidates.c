@@ -95,23 +95,35 @@ static void begin(struct lm_target_candidates *candidates, const struct lm_targe
     candidates->count = candidates->left_out = 0;
 }
 
+static struct lm_target_candidate candidate_of_item(const struct lm_target_set *set, uint32_t index,
+                                                    const struct lm_target_query *query)
+{
+    const struct lm_target *t = &set->items[index];
+    return (struct lm_target_candidate){
+        .index = (uint16_t)index,
+        .is_mover = t->speed_mm_s != 0,
+        .scatterer_count = t->scatterer_count,
+        .body = {t->id, t->mean_rcs_dbsm_q8, t->swerling, t->signature, t->flags},
+        .state = lm_mover_state_at(t, query->time_us)};
+}
+
+/* Set the elevation of a candidate of the image. */
+static void raise_item(struct lm_target_candidate *candidate, const struct lm_target_set *set,
+                       const struct lm_target_query *query)
+{
+    const struct lm_target *t = &set->items[candidate->index];
+    candidate->elevation_m_q6 = origin_elevation_m_q6(
+        t->elevation_m_q6, t->flags & LM_TARGET_ABOVE_GROUND, candidate->state.position, query);
+}
+
 void lm_target_candidates_select(struct lm_target_candidates *candidates,
                                  const struct lm_target_set *set,
                                  const struct lm_target_query *query)
 {
     begin(candidates, set, query);
     for (uint32_t i = 0; i < set->count; i++) {
-        const struct lm_target *t = &set->items[i];
-        const struct lm_target_candidate candidate = {
-            .index = (uint16_t)i,
-            .is_mover = t->speed_mm_s != 0,
-            .scatterer_count = t->scatterer_count,
-            .body = {t->id, t->mean_rcs_dbsm_q8, t->swerling, t->signature, t->flags},
-            .state = lm_mover_state_at(t, query->time_us)};
-        if (add(candidates, candidate, t, query)) {
-            struct lm_target_candidate *added = &candidates->candidate[candidates->count - 1];
-            added->elevation_m_q6 = origin_elevation_m_q6(
-                t->elevation_m_q6, t->flags & LM_TARGET_ABOVE_GROUND, added->state.position, query);
+        if (add(candidates, candidate_of_item(set, i, query), &set->items[i], query)) {
+            raise_item(&candidates->candidate[candidates->count - 1], set, query);
         }
     }
 }
@@ -137,19 +149,31 @@ static struct lm_target_body body_of_live(const struct lm_target_set *set, uint3
     return body;
 }
 
+static struct lm_target_candidate candidate_of_live(const struct lm_target_set *set,
+                                                    uint32_t number,
+                                                    const struct lm_target_query *query)
+{
+    const struct lm_live_state s = lm_live_at(&set->live->target[number], query->time_us);
+    return (struct lm_target_candidate){.index = (uint16_t)number,
+                                        .is_mover = s.speed_mm_s != 0,
+                                        .body = body_of_live(set, number),
+                                        .state = {s.position, s.heading, s.course, s.speed_mm_s}};
+}
+
+/* Set the elevation of a live candidate. */
+static void raise_live(struct lm_target_candidate *candidate, const struct lm_target_set *set,
+                       const struct lm_target_query *query)
+{
+    const struct lm_live_target *t = &set->live->target[candidate->index];
+    candidate->elevation_m_q6 =
+        origin_elevation_m_q6(t->height_m_q6, !t->has_height, candidate->state.position, query);
+}
+
 static void add_live(struct lm_target_candidates *candidates, uint32_t number,
                      const struct lm_target_query *query)
 {
-    const struct lm_live_target *t = &candidates->set.live->target[number];
-    const struct lm_live_state s = lm_live_at(t, query->time_us);
-    const struct lm_target_candidate candidate = {
-        .index = (uint16_t)number,
-        .is_mover = s.speed_mm_s != 0,
-        .body = body_of_live(&candidates->set, number),
-        .state = {s.position, s.heading, s.course, s.speed_mm_s}};
-    if (add(candidates, candidate, NULL, query)) {
-        candidates->candidate[candidates->count - 1].elevation_m_q6 =
-            origin_elevation_m_q6(t->height_m_q6, !t->has_height, s.position, query);
+    if (add(candidates, candidate_of_live(&candidates->set, number, query), NULL, query)) {
+        raise_live(&candidates->candidate[candidates->count - 1], &candidates->set, query);
     }
 }
 
@@ -201,6 +225,25 @@ static void add_met(struct lm_target_candidates *candidates, const struct met *m
             candidates->left_out++;
         }
     }
+}
+
+bool lm_target_candidate_of(struct lm_target_candidate *candidate, const struct lm_target_set *set,
+                            bool is_live, uint32_t index, const struct lm_target_query *query)
+{
+    if (is_live) {
+        if (!set->live || index >= LM_LIVE_MAX || !set->live->target[index].is_there) {
+            return false;
+        }
+        *candidate = candidate_of_live(set, index, query);
+        raise_live(candidate, set, query);
+        return true;
+    }
+    if (index >= set->count) {
+        return false;
+    }
+    *candidate = candidate_of_item(set, index, query);
+    raise_item(candidate, set, query);
+    return true;
 }
 
 /* Plane around a position, on which live targets are looked for. */

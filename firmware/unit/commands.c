@@ -2,6 +2,7 @@
 
 #include "fx/sat.h"
 #include "ownship.h"
+#include "tracking.h"
 
 enum { CONTROLS_A_STEP = 8, UNABLE_SHOWN_US = 2000000 };
 
@@ -49,6 +50,19 @@ static void restart_patch(struct lm_unit *u, uint64_t now_us)
     }
 }
 
+/* The track key ends a track, or designates one; held, it ranges. */
+static void apply_track_key(struct lm_unit *u, uint32_t effects, uint64_t now_us)
+{
+    if (effects & LM_EFFECT_TRACK && lm_tracking_drop(u, now_us)) {
+        return;
+    }
+    const enum lm_refusal reason =
+        effects & LM_EFFECT_TRACK ? lm_tracking_designate(u, now_us) : lm_tracking_range(u, now_us);
+    if (show_unable(u, reason, now_us) != LM_REFUSED_NOT) {
+        note_refusal(u, reason);
+    }
+}
+
 void lm_apply_effects(struct lm_unit *u, uint32_t effects, uint64_t now_us)
 {
     if (effects & LM_EFFECT_RANGE) {
@@ -79,6 +93,9 @@ void lm_apply_effects(struct lm_unit *u, uint32_t effects, uint64_t now_us)
         u->cursor.is_placed = false; /* the next step places it */
     }
     u->count.swaps += (effects & LM_EFFECT_SWAP) != 0;
+    if (effects & (LM_EFFECT_TRACK | LM_EFFECT_RANGING)) {
+        apply_track_key(u, effects, now_us);
+    }
 }
 
 static bool has_cursor(const struct lm_unit *u)
@@ -196,8 +213,12 @@ static enum lm_refusal apply_control(struct lm_unit *u, const struct lm_control 
     case LM_CONTROL_CURSOR:
         return put_cursor(u, control->cursor);
     case LM_CONTROL_DROP:
-        lm_apply_effects(u, LM_EFFECT_SECTOR, now_us);
+        lm_apply_effects(u, lm_tracking_drop(u, now_us) ? 0 : LM_EFFECT_SECTOR, now_us);
         return LM_REFUSED_NOT;
+    case LM_CONTROL_TRACK:
+        return show_unable(u, lm_tracking_designate(u, now_us), now_us);
+    case LM_CONTROL_RANGING:
+        return show_unable(u, lm_tracking_range(u, now_us), now_us);
     case LM_CONTROL_SAR:
         return try_patch(u, &control->sar, now_us);
     case LM_CONTROL_RANGE:

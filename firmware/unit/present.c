@@ -4,6 +4,7 @@
 #include "lm/bit.h"
 #include "lm/units.h"
 #include "ownship.h"
+#include "tracking.h"
 
 static void describe_cursor(const struct lm_unit *u, struct lm_symbols *s)
 {
@@ -81,6 +82,7 @@ static struct lm_symbols describe(const struct lm_unit *u)
     lm_picture_describe(&u->picture, &s);
     describe_cursor(u, &s);
     describe_steerpoint(u, &s);
+    lm_tracking_describe(u, &s);
     if (u->picture.is_view_held && lm_ownship_is_known(&u->ownship)) {
         describe_ownship(u, &s);
     }

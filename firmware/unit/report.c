@@ -6,6 +6,7 @@
 #include "lm/canas_report.h"
 #include "lm/units.h"
 #include "ownship.h"
+#include "tracking.h"
 
 enum { RANGE_MOST_M = 400000 }; /* of lm_slant_of_ground_m_q8 */
 
@@ -67,10 +68,12 @@ static bool shows_patch(const struct lm_unit *u)
 
 static void tell_place(struct lm_unit *u, struct lm_report *r)
 {
-    if (!shows_patch(u)) {
+    const bool is_tracked = lm_tracking_is_locked(u) && u->track.kind == LM_TRACK_FIXED;
+    if (!is_tracked && !shows_patch(u)) {
         return;
     }
-    const struct lm_position centre = u->picture.sar.command.centre;
+    const struct lm_position centre =
+        is_tracked ? u->track.seen.position : u->picture.sar.command.centre;
     const int32_t elevation_m_q10 = lm_elevation_at(u, centre);
     tell_position(r, LM_REPORT_PLACE_LATITUDE, centre);
     if (elevation_m_q10 != LM_NO_ELEVATION) {
@@ -124,6 +127,27 @@ static void tell_state(const struct lm_unit *u, struct lm_report *r)
     tell_patch(u, r);
 }
 
+/* Slant ranges are below 400 km: 2^29 mm. */
+static void tell_track(const struct lm_unit *u, struct lm_report *r)
+{
+    const struct lm_track *t = &u->track;
+    const struct lm_track_seen *seen = &t->seen;
+    tell(r, LM_REPORT_TRACK,
+         (uint32_t)t->kind << 24 | (uint32_t)t->state << 16 | (uint32_t)t->loss << 8 | t->number);
+    if (!lm_tracking_is_locked(u)) {
+        return;
+    }
+    tell_position(r, LM_REPORT_TRACK_LATITUDE, seen->position);
+    tell(r, LM_REPORT_TRACK_ELEVATION, mm_of_m_q10(seen->elevation_m_q10));
+    tell(r, LM_REPORT_TRACK_BEARING, lm_ten_millionths_of_bam(seen->bearing));
+    tell(r, LM_REPORT_TRACK_SLANT, lm_mm_of_m_q8(seen->slant_m_q8));
+    tell(r, LM_REPORT_TRACK_RATE, (uint32_t)seen->range_rate_mm_s);
+    tell(r, LM_REPORT_TRACK_SPEED, seen->speed_mm_s);
+    if (seen->speed_mm_s != 0) {
+        tell(r, LM_REPORT_TRACK_COURSE, lm_ten_millionths_of_bam(seen->course));
+    }
+}
+
 void lm_send_reports(struct lm_unit *u, uint64_t now_us)
 {
     const uint32_t sets = lm_canas_report_due(&u->report, now_us);
@@ -138,6 +162,9 @@ void lm_send_reports(struct lm_unit *u, uint64_t now_us)
         }
         if (sets >> LM_REPORT_STATE & 1) {
             tell_state(u, &values);
+        }
+        if (sets >> LM_REPORT_TRACKED & 1) {
+            tell_track(u, &values);
         }
         lm_canas_report_begin(&u->report, sets, &values, now_us);
     }

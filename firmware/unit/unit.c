@@ -10,6 +10,7 @@
 #include "pacing.h"
 #include "present.h"
 #include "report.h"
+#include "tracking.h"
 
 /* Priorities of a further table's rows: four tables share the 256 of an event. */
 enum { PRIORITIES_A_TABLE = 64 };
@@ -175,7 +176,7 @@ static void restart_after_jump(struct lm_unit *u, uint64_t now_us)
 /* Draw the lines that are due. Returns how many more the step has time for. */
 static uint32_t draw_lines(struct lm_unit *u, uint64_t now_us)
 {
-    const bool may_draw = (u->flags & LM_FLAGS_NO_LINES) == 0;
+    const bool may_draw = (u->flags & LM_FLAGS_NO_LINES) == 0 && !lm_tracking_holds_antenna(u);
     const struct lm_paced paced = lm_draw_due_lines(&u->picture, may_draw, now_us);
     u->count.lines += paced.lines;
     u->count.lines_dropped += paced.dropped;
@@ -184,6 +185,7 @@ static uint32_t draw_lines(struct lm_unit *u, uint64_t now_us)
 
 void lm_unit_step(struct lm_unit *u, uint64_t now_us)
 {
+    u->now_us = now_us;
     take_bus(u, now_us);
     restart_after_jump(u, now_us);
     lm_unit_weather_at(&u->weather, now_us);
@@ -192,6 +194,7 @@ void lm_unit_step(struct lm_unit *u, uint64_t now_us)
     if (lm_update_flags(u, now_us) & LM_FLAGS_REMOVING) {
         lm_picture_remove(&u->picture);
     }
+    lm_tracking_step(u, now_us);
     lm_follow_cursor(u, now_us);
     lm_unit_map_service(&u->map, now_us);
     const uint32_t lines_left = draw_lines(u, now_us);

@@ -253,10 +253,11 @@ static bool parse_cursor(char **words, int count, struct lm_control *c)
 /* Commands of one word. */
 static bool parse_plain(const char *word, struct lm_control *c)
 {
-    static const char *const names[] = {"designate", "drop"};
-    static const enum lm_control_kind kinds[] = {LM_CONTROL_DESIGNATE, LM_CONTROL_DROP};
+    static const char *const names[] = {"designate", "drop", "track", "ranging"};
+    static const enum lm_control_kind kinds[] = {LM_CONTROL_DESIGNATE, LM_CONTROL_DROP,
+                                                 LM_CONTROL_TRACK, LM_CONTROL_RANGING};
     int32_t index;
-    if (!choice(word, names, 2, &index)) {
+    if (!choice(word, names, 4, &index)) {
         return false;
     }
     c->kind = kinds[index];
@@ -400,10 +401,10 @@ static int append(struct script *s, const char *place, int line_number,
 /* What is wrong with a line that was not understood. */
 static void find_reason(const struct script *s, char **words, int count, char text[REFUSAL_BYTES])
 {
-    static const char *const commands[] = {"range",    "azimuth",   "gain",   "freeze", "sar",
-                                           "sarfrom",  "steer",     "rain",   "jam",    "weather",
-                                           "seastate", "osb",       "rocker", "knob",   "slew",
-                                           "cursor",   "designate", "drop",   "picture"};
+    static const char *const commands[] = {
+        "range", "azimuth", "gain",      "freeze",   "sar",   "sarfrom", "steer",
+        "rain",  "jam",     "weather",   "seastate", "osb",   "rocker",  "knob",
+        "slew",  "cursor",  "designate", "drop",     "track", "ranging", "picture"};
     int32_t which;
     double seconds;
     const size_t size = REFUSAL_BYTES;

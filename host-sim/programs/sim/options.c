@@ -40,6 +40,8 @@ static const char script_help[] =
     "  SECONDS slew X Y FOR_S                     cursor to the right and up, -1..1\n"
     "  SECONDS cursor LAT LON                     put the cursor at a place\n"
     "  SECONDS designate | drop                   target management switch up, down\n"
+    "  SECONDS track                              the switch right: track what is at the cursor\n"
+    "  SECONDS ranging                            range the ground straight ahead, or end that\n"
     "  SECONDS picture NAME                       write DIR/NAME.png then\n";
 
 static const char *take_size(void *context, const char *text)

@@ -27,6 +27,10 @@
 #define LM_BEAM_ONE_WAY_DB_Q8 3083 /* 40 log10(2) 2^8 = 3082.55: 1.5e-4 too much */
 #define LM_BEAM_TWO_WAY_DB_Q8 6165 /* 80 log10(2) 2^8 = 6165.09: 1.5e-5 too little */
 
+/* log2 of the two-way beam's width as a rectangle of the same top and area, sqrt(pi / (8 ln 2)) of
+ * the one-way half-power width. */
+#define LM_LOG2_TWO_WAY_Q16 (-26861) /* log2(0.752694) 2^16 = -26861.16 */
+
 /* Units of length: the nautical mile, the binary logarithm of ten of them in metres * 256, and the
  * foot of 0.3048 m. */
 #define LM_NM_M                 1852

@@ -60,8 +60,11 @@ enum lm_control_kind {
     LM_CONTROL_KNOB,      /* knob: the range knob was turned to this deflection */
     LM_CONTROL_SLEW,      /* slew: the cursor control was moved to this deflection */
     LM_CONTROL_DESIGNATE, /* target management switch up */
-    LM_CONTROL_DROP       /* target management switch down */
+    LM_CONTROL_DROP,      /* target management switch down */
+    LM_CONTROL_TRACK,     /* target management switch right: track what is at the cursor */
+    LM_CONTROL_RANGING    /* range the ground straight ahead, or end that */
 };
+enum { LM_CONTROL_KINDS = LM_CONTROL_RANGING + 1 };
 
 /* One act of the operator. Only the member that belongs to `kind` means anything.
  *

@@ -52,7 +52,9 @@ enum lm_control_switch {
     LM_CONTROL_SWITCH_DESIGNATE = 1,
     LM_CONTROL_SWITCH_DROP,
     LM_CONTROL_SWITCH_FREEZE,
-    LM_CONTROL_SWITCH_RELEASE
+    LM_CONTROL_SWITCH_RELEASE,
+    LM_CONTROL_SWITCH_TRACK,
+    LM_CONTROL_SWITCH_RANGING
 };
 
 /* Service code of a patch's frames, bits. */

@@ -1,5 +1,5 @@
 /* Reports: what the display tells the other avionics over CANaerospace without being asked: the
- * cursor, the designated place, mode and settings, the state of a patch.
+ * cursor, the designated place, mode and settings, the state of a patch, the track.
  *
  * Items that belong together are a set. A set is told at a stated rate. Its frames hold values of
  * one moment and have one message code, which counts up from set to set. A value that is not known
@@ -27,7 +27,8 @@ enum lm_report_item {
     LM_REPORT_CURSOR_BEARING,   /* from the ownship, from true north, 1e-7 degree */
     LM_REPORT_CURSOR_RANGE,   /* along the ground, mm; known up to 400 km, as is the slant range */
     LM_REPORT_CURSOR_SLANT,   /* from the antenna to the map's surface there, mm */
-    LM_REPORT_PLACE_LATITUDE, /* designated place: the centre of the patch that is shown */
+    LM_REPORT_PLACE_LATITUDE, /* designated place: what is tracked and stands still, or the centre
+                                 of the patch that is shown */
     LM_REPORT_PLACE_LONGITUDE,
     LM_REPORT_PLACE_ELEVATION,
     LM_REPORT_PICTURE,     /* four bytes: enum lm_picture_kind, enum lm_sector_mode, enum lm_fov,
@@ -38,6 +39,15 @@ enum lm_report_item {
     LM_REPORT_PATCH,       /* three bytes: enum lm_report_patch, per cent of its lines drawn, enum
                               lm_refusal of the last patch that was refused, for two seconds */
     LM_REPORT_PATCH_CELL,  /* mm */
+    LM_REPORT_TRACK,       /* four bytes: kind, state, loss, number (lm/track.h) */
+    LM_REPORT_TRACK_LATITUDE,
+    LM_REPORT_TRACK_LONGITUDE,
+    LM_REPORT_TRACK_ELEVATION, /* above mean sea level, mm */
+    LM_REPORT_TRACK_BEARING,   /* from the ownship, from true north, 1e-7 degree */
+    LM_REPORT_TRACK_SLANT,     /* straight from the antenna, mm */
+    LM_REPORT_TRACK_RATE,      /* of that range, mm/s */
+    LM_REPORT_TRACK_SPEED,     /* over the ground, mm/s */
+    LM_REPORT_TRACK_COURSE,    /* of that speed, 1e-7 degree */
     LM_REPORT_ITEMS
 };
 
@@ -54,7 +64,13 @@ enum lm_report_switch {
 
 enum lm_report_patch { LM_REPORT_NO_PATCH, LM_REPORT_READING, LM_REPORT_DRAWING, LM_REPORT_DRAWN };
 
-enum lm_report_set { LM_REPORT_CURSOR, LM_REPORT_PLACE, LM_REPORT_STATE, LM_REPORT_SETS };
+enum lm_report_set {
+    LM_REPORT_CURSOR,
+    LM_REPORT_PLACE,
+    LM_REPORT_STATE,
+    LM_REPORT_TRACKED,
+    LM_REPORT_SETS
+};
 
 /* An item's frame. */
 struct lm_report_row {

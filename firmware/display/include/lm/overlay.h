@@ -45,6 +45,9 @@ const char *lm_flag_word(uint32_t number);
 /* Time to go that is unknown, or 100 minutes and longer, for which the read-out has no room. */
 enum { LM_TO_GO_NONE = 6000 };
 
+/* Shape of what marks a track. */
+enum lm_track_shape { LM_SHAPE_NONE, LM_SHAPE_FILLED, LM_SHAPE_HOLLOW, LM_SHAPE_CROSS };
+
 /* The symbols of the radar picture: which are shown, where, and with which numbers. */
 struct lm_symbols {
     struct lm_view view;
@@ -72,6 +75,12 @@ struct lm_symbols {
     bool is_steerpoint_on_glass; /* the steerpoint is drawn */
     struct lm_point steerpoint;
     uint32_t to_go_s; /* to the steerpoint; or LM_TO_GO_NONE */
+
+    enum lm_track_shape track_shape;
+    struct lm_point track;
+    bool has_track_course; /* a line shows it */
+    fx_bam_t track_course; /* clockwise from straight up */
+    struct lm_text track_words;
 
     bool is_cue_shown;     /* window: `cue` is drawn */
     struct lm_point cue;   /* where the cursor would be in the whole sector */

@@ -77,4 +77,7 @@ void lm_scan_line_prefetch(struct lm_tile_cache *tiles, uint8_t lod,
 int32_t lm_scan_elevation(struct lm_tile_cache *tiles, uint8_t lod, struct lm_position position,
                           int32_t fallback_m_q10);
 
+/* The cell there, as in struct lm_scan_line; LM_CELL_NONE if no tile is resident. */
+uint16_t lm_scan_cell(struct lm_tile_cache *tiles, uint8_t lod, struct lm_position position);
+
 #endif

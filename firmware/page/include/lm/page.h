@@ -33,7 +33,9 @@ enum lm_effect {
     LM_EFFECT_SWAP = 1 << 6,        /* exchange this display's page with the other's */
     LM_EFFECT_BEAM = 1 << 7,        /* take the page's tilt and beam shape */
     LM_EFFECT_HEIGHT = 1 << 8,      /* take the page's choice of height */
-    LM_EFFECT_RANGE = 1 << 9        /* the range scale changed */
+    LM_EFFECT_RANGE = 1 << 9,       /* the range scale changed */
+    LM_EFFECT_TRACK = 1 << 10,      /* track what is at the cursor, or end the track */
+    LM_EFFECT_RANGING = 1 << 11     /* range the ground ahead, or end that */
 };
 
 enum {
@@ -65,6 +67,7 @@ struct lm_page {
     bool is_frozen;               /* the picture is held, and the aircraft moves over it */
     bool is_snowplow;             /* the cursor stays ahead of the aircraft */
     bool is_decluttered;          /* the labels in `hidden` are not shown on the radar page */
+    uint8_t track;                /* a track is on: its kind, 1.. (lm/track.h); 0: none */
     uint32_t hidden;              /* bit n - 1: declutter takes OSB n's label away */
 
     int16_t gain_db;     /* added to the picture's level, -LM_GAIN_MAX_DB..LM_GAIN_MAX_DB */
@@ -116,6 +119,9 @@ void lm_page_show_picture(struct lm_page *p, enum lm_picture_kind kind);
 
 /* Take over the cell and the geometry of the patch that begins: a command may have chosen them. */
 void lm_page_note_patch(struct lm_page *p, const struct lm_sar_command *patch);
+
+/* Set the kind of the track that is on, 0 to 3. */
+void lm_page_note_track(struct lm_page *p, uint8_t kind);
 
 /* Set the tilt, signed BAM, that the radar chose. Ignored while the operator sets the tilt. */
 void lm_page_note_tilt(struct lm_page *p, int32_t tilt);

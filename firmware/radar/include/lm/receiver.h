@@ -42,6 +42,19 @@ void lm_receiver_set(struct lm_receiver *r, const struct lm_radar *radar,
  * each lm_receiver_set. It costs nothing in a line. */
 void lm_receiver_impair(struct lm_receiver *r, int32_t loss_db_q8, int32_t rise_db_q8);
 
+/* What an echo at one slant range stands against, dB: without malfunctions, jammers and rain. */
+struct lm_receiver_floor {
+    int32_t noise_db_q8; /* mean noise, of gamma, with what clear air takes of the echo */
+    int32_t area_db_q8;  /* of a resolution cell: a cross section less this is the gamma of a point
+                            in the beam's middle */
+};
+
+/* Compute the floor at a slant range, over flat ground `height_m_q10` below the antenna (within
+ * 30 km). Cost: about 500 instructions. */
+void lm_receiver_floor_at(struct lm_receiver_floor *f, const struct lm_radar *radar,
+                          uint32_t slant_m_q8, int32_t height_m_q10, uint8_t range_index,
+                          enum lm_fov fov);
+
 /* Replace the power of each bin by its mean over the pulse. Cost: 9 instructions a bin where the
  * pulse is longer than a bin. */
 void lm_receiver_pulse(const struct lm_receiver *r, uint32_t *power_q24);

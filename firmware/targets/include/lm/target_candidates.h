@@ -92,6 +92,12 @@ void lm_target_candidates_select(struct lm_target_candidates *candidates,
                                  const struct lm_target_set *set,
                                  const struct lm_target_query *query);
 
+/* State of one target at the query's time, of the image or the live one of that number, wherever it
+ * is; neither distance, place nor chip. False, and *candidate unchanged, if it is not there. Cost:
+ * about 2,500 instructions. */
+bool lm_target_candidate_of(struct lm_target_candidate *candidate, const struct lm_target_set *set,
+                            bool is_live, uint32_t index, const struct lm_target_query *query);
+
 /* Add the live targets within the query's reach: as far as there is room those with the greatest
  * cross section, in whole dB, and of equal ones the lowest numbers. The others are counted in
  * left_out. Cost: 80 instructions for each that is there, about 1,500 for each that is added, and

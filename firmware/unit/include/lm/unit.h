@@ -19,6 +19,7 @@
  *
  *     unit.c -+-> follow.c ---> commands.c -+
  *             +-> pacing.c -----------------+-> picture.c -> picture_sector.c, picture_patch.c
+ *             +-> tracking.c
  *             +-> flags.c
  *             +-> report.c
  *             +-> present.c
@@ -44,6 +45,7 @@
 #include "lm/nav.h"
 #include "lm/page.h"
 #include "lm/picture.h"
+#include "lm/track.h"
 #include "lm/unit_map.h"
 #include "lm/unit_weather.h"
 
@@ -154,6 +156,9 @@ struct lm_unit {
     enum lm_refusal refusal; /* reason of the control refused last */
 
     struct lm_picture picture;
+    struct lm_track track;
+    uint8_t track_mode; /* of the page, when the track was begun: another one ends it */
+    uint64_t now_us;    /* of the last step */
     struct lm_composer composer;
     uint32_t frame_steps; /* that the frame on the lent surface has taken so far */
     uint64_t next_frame_us;

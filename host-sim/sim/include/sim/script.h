@@ -21,6 +21,8 @@
  *   SECONDS cursor LAT LON                    put the cursor at a place
  *   SECONDS designate                         target management switch up
  *   SECONDS drop                              target management switch down
+ *   SECONDS track                             the switch right: track what is at the cursor
+ *   SECONDS ranging                           range the ground straight ahead, or end that
  *   SECONDS picture NAME                      write NAME.png into the folder of --png
  *
  * Times do not fall from line to line; '#' begins a remark. A press or a slew that lasts ends by

@@ -35,6 +35,7 @@ TEST(waves_are_their_formulas_rounded)
     IS_NEAREST(LM_HALF_LIGHT_M_PER_NS_Q24, 299792458 / 2e9, 24);
     IS_NEAREST(LM_BEAM_ONE_WAY_DB_Q8, 40 * log10(2), 8);
     IS_NEAREST(LM_BEAM_TWO_WAY_DB_Q8, 80 * log10(2), 8);
+    IS_NEAREST(LM_LOG2_TWO_WAY_Q16, log2(sqrt(M_PI / (8 * log(2)))), 16);
 }
 
 TEST(lengths_are_their_formulas_rounded)

@@ -67,6 +67,8 @@ TEST(every_control_goes_over_the_bus)
         lm_control_button(false, 28),
         lm_control_designate(),
         lm_control_drop(),
+        {.kind = LM_CONTROL_TRACK},
+        {.kind = LM_CONTROL_RANGING},
         {.kind = LM_CONTROL_FREEZE, .is_frozen = true},
         {.kind = LM_CONTROL_FREEZE, .is_frozen = false},
         lm_control_knob(-1000),
@@ -82,7 +84,7 @@ TEST(every_control_goes_over_the_bus)
         carry(&from, &to, &exact[i]);
         assert_true(lm_canas_control_next(&to, &got));
         assert_int_equal(got.kind, exact[i].kind);
-        const bool is_switch = got.kind == LM_CONTROL_DESIGNATE || got.kind == LM_CONTROL_DROP;
+        const bool is_switch = got.kind >= LM_CONTROL_DESIGNATE;
         if (got.kind == LM_CONTROL_FREEZE) {
             assert_int_equal(got.is_frozen, exact[i].is_frozen);
         } else if (!is_switch) {
@@ -232,7 +234,7 @@ TEST(frames_of_a_wrong_type_length_sender_or_act_are_counted)
         if (i == 3) {
             frame = (struct lm_can_frame){.id = LM_CONTROL_ID + LM_CONTROL_ITEM_SWITCH,
                                           .length = 5,
-                                          .data = {INSTRUCTOR, LM_CANAS_UCHAR, 0, 1, 5}};
+                                          .data = {INSTRUCTOR, LM_CANAS_UCHAR, 0, 1, 7}};
         }
         lm_canas_control_take(&c, &frame);
     }
@@ -286,7 +288,7 @@ TEST(any_bytes_at_all_are_safe_and_make_only_kinds_that_exist)
         lm_canas_control_take(&c, &frame);
         struct lm_control control;
         while ((dice & 0x30000) == 0 && lm_canas_control_next(&c, &control)) {
-            assert_in_range(control.kind, 0, LM_CONTROL_DROP);
+            assert_in_range(control.kind, 0, LM_CONTROL_KINDS - 1);
             assert_int_not_equal(control.kind, LM_CONTROL_ENVIRONMENT);
             obeyed++;
         }

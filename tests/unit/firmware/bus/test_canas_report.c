@@ -109,7 +109,7 @@ TEST(each_item_is_told_at_its_rate_with_a_code_that_counts_its_sets)
         for (int k = 0; k < w.count; k++) {
             if (w.sent[k].id == row->id) {
                 assert_int_equal(w.sent[k].data[3], ++code);
-                assert_in_range(w.at_us[k], set * period_us, set * period_us + 4 * STEP_US);
+                assert_in_range(w.at_us[k], set * period_us, set * period_us + 6 * STEP_US);
                 set++;
             }
         }
@@ -126,7 +126,7 @@ TEST(a_frame_has_sender_type_code_and_the_number_with_its_highest_byte_first)
     begin(&r, &w);
     values.word[LM_REPORT_CURSOR_LATITUDE] = (uint32_t)-123456789;
     values.word[LM_REPORT_GAIN] = (uint32_t)-7 & 0xff;
-    run_until(&r, &w, &values, 5 * STEP_US, 100);
+    run_until(&r, &w, &values, 7 * STEP_US, 100);
     assert_int_equal(w.count, LM_REPORT_ITEMS);
     for (int i = 0; i < w.count; i++) {
         assert_int_equal(w.sent[i].id, lm_report_rows[i].id);
@@ -149,7 +149,7 @@ TEST(what_is_not_known_is_told_as_no_data_and_what_is_old_as_old)
     begin(&r, &w);
     values.known &= ~(1u << LM_REPORT_CURSOR_ELEVATION);
     values.is_stale = true;
-    run_until(&r, &w, &values, 5 * STEP_US, 100);
+    run_until(&r, &w, &values, 7 * STEP_US, 100);
     for (int i = 0; i < w.count; i++) {
         assert_int_equal(w.sent[i].data[2], 1);
     }
@@ -168,7 +168,7 @@ TEST(a_set_holds_values_of_one_moment_however_slowly_the_bus_takes_it)
     for (uint32_t i = 0; i < LM_REPORT_ITEMS; i++) {
         values.word[i] = 0;
     }
-    run_until(&r, &w, &values, 20 * STEP_US, 1);
+    run_until(&r, &w, &values, 24 * STEP_US, 1);
     assert_int_equal(w.count, LM_REPORT_ITEMS);
     for (int i = 0; i < 6; i++) {
         assert_int_equal(w.sent[i].data[7], (4 + i) & 0xff);
@@ -184,8 +184,8 @@ TEST(a_bus_that_takes_too_little_cuts_sets_short_and_they_are_counted)
     begin(&r, &w);
     run_until(&r, &w, &values, 2000000, 0);
     assert_int_equal(w.count, 0);
-    /* 20 of the cursor, 4 places and 10 states were begun; the last of each still waits. */
-    assert_int_equal(r.count.cut, 20 + 4 + 10 - LM_REPORT_SETS);
+    /* 20 of the cursor, 4 places, 10 states and 20 tracks were begun; the last of each waits. */
+    assert_int_equal(r.count.cut, 20 + 4 + 10 + 20 - LM_REPORT_SETS);
     run_until(&r, &w, &values, 2100000, 100);
     assert_int_equal(w.sent[0].data[3], 21); /* the cursor as it is now, not as it was */
 }
@@ -198,7 +198,7 @@ TEST(a_bus_that_is_down_loses_frames_and_holds_nothing_up)
     begin(&r, &w);
     w.answer = LM_ERR_IO;
     run_until(&r, &w, &values, 1000000, 100);
-    assert_int_equal(r.count.lost, 10 * 6 + 2 * 3 + 5 * 6);
+    assert_int_equal(r.count.lost, 10 * 6 + 2 * 3 + 5 * 6 + 10 * 9);
     assert_int_equal(r.count.sent + r.count.cut, 0);
 }
 

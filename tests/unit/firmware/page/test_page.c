@@ -233,14 +233,20 @@ TEST(osb_6_flies_by_the_barometric_height)
     free_rig(r);
 }
 
-TEST(osb_17_means_nothing_on_the_radar_page)
+TEST(osb_17_is_blank_until_it_tracks_and_held_it_ranges)
 {
     struct rig *r = fly_rig();
-    const struct lm_page before = r->unit.page;
-    press(r, 17);
-    assert_memory_equal(&r->unit.page, &before, sizeof before);
     struct lm_label label;
-    assert_false(lm_page_label(&before, 17, &label));
+    assert_false(lm_page_label(&r->unit.page, 17, &label));
+    press(r, 17);
+    run(r, 0.1);
+    assert_true(labelled(r, 17, "FTT", 1));
+    press(r, 17);
+    run(r, 0.1);
+    assert_false(lm_page_label(&r->unit.page, 17, &label));
+    hold(r, 17, 1);
+    run(r, 0.1);
+    assert_true(labelled(r, 17, "AGR", 1));
     free_rig(r);
 }
 

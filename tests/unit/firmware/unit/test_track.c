@@ -1,0 +1,291 @@
+/* Tracks of a unit in flight: geometry against PROJ, what breaks a lock, and the radar equation. */
+#include "check.h"
+#include "hs/angle.h"
+#include "lm/receiver.h"
+#include "target_support.h"
+#include "unit_rig.h"
+#include "wgs84.h"
+
+#include <math.h>
+
+static struct lm_target moving; /* north of the aircraft */
+
+static const struct lm_control track_it = {.kind = LM_CONTROL_TRACK},
+                               range_it = {.kind = LM_CONTROL_RANGING},
+                               drop_it = {.kind = LM_CONTROL_DROP};
+
+static void is_near(double value, double wanted, double within)
+{
+    if (!(fabs(value - wanted) <= within)) {
+        fail_msg("%.4f should be %.4f within %.4f", value, wanted, within);
+    }
+}
+
+static void cursor_to(struct rig *r, double latitude, double longitude)
+{
+    command(r, (struct lm_control){.kind = LM_CONTROL_CURSOR,
+                                   .cursor = {hs_bam(latitude), hs_bam(longitude)}});
+}
+
+/* A rig in flight with its cursor at a place, which it then tracks. */
+static struct rig *rig_at(double latitude, double longitude)
+{
+    struct rig *r = fly_rig();
+    cursor_to(r, latitude, longitude);
+    run(r, 0.2);
+    return r;
+}
+
+static const struct lm_track *track_of(const struct rig *r)
+{
+    return &r->unit.track;
+}
+
+static struct rig *gmt_rig(double heading_deg, double speed_m_s, double rcs_db)
+{
+    struct rig *r = rig_at(46, 11);
+    moving = point_at(46, 11, 3, rcs_db);
+    moving.flags = LM_TARGET_ABOVE_GROUND;
+    moving.swerling = 0;
+    moving.heading = hs_bam(heading_deg);
+    moving.speed_mm_s = (uint32_t)lround(speed_m_s * 1000);
+    moving.leg_m = 50000;
+    seal_target(&moving);
+    r->unit.map.target_set.items = &moving;
+    r->unit.map.target_set.count = 1;
+    const struct lm_mover_state at = lm_mover_state_at(&moving, r->unit.exercise.time_us);
+    command(r, (struct lm_control){.kind = LM_CONTROL_SECTOR, .sector = {LM_SECTOR_GMT, 0}});
+    command(r, (struct lm_control){.kind = LM_CONTROL_CURSOR, .cursor = at.position});
+    command(r, track_it);
+    run(r, 0.3);
+    return r;
+}
+
+/* Straight range between two points by their Cartesian coordinates. */
+static double chord_m(const double a[3], const double b[3])
+{
+    double xyz[2][3];
+    const double *p[2] = {a, b};
+    const double e2 = 0.00669437999014;
+    for (int i = 0; i < 2; i++) {
+        const double lat = p[i][0] * M_PI / 180, lon = p[i][1] * M_PI / 180;
+        const double n = 6378137 / sqrt(1 - e2 * sin(lat) * sin(lat));
+        xyz[i][0] = (n + p[i][2]) * cos(lat) * cos(lon);
+        xyz[i][1] = (n + p[i][2]) * cos(lat) * sin(lon);
+        xyz[i][2] = (n * (1 - e2) + p[i][2]) * sin(lat);
+    }
+    return hypot(hypot(xyz[0][0] - xyz[1][0], xyz[0][1] - xyz[1][1]), xyz[0][2] - xyz[1][2]);
+}
+
+TEST(a_fixed_place_is_tracked_with_the_bearing_and_slant_range_of_double_precision)
+{
+    struct rig *r = rig_at(46.01, 11.03);
+    command(r, track_it);
+    run(r, 1);
+    const struct lm_track *t = track_of(r);
+    assert_int_equal(t->state, LM_TRACK_HELD);
+    assert_int_equal(t->kind, LM_TRACK_FIXED);
+    const struct lm_ownship *own = &r->unit.ownship;
+    const double from[3] = {hs_degrees(own->latitude), hs_degrees(own->longitude),
+                            own->height_m_q6 / 64.0};
+    const double to[3] = {46.01, 11.03, t->seen.elevation_m_q10 / 1024.0};
+    const struct geod_geodesic earth = wgs84();
+    double metres, bearing;
+    geod_inverse(&earth, from[0], from[1], to[0], to[1], &metres, &bearing, NULL);
+    const double flown_m = 150 * LM_TRACK_STEP_US / 1e6;
+    print_message("# slant %.2f m, double %.2f; bearing %.4f, PROJ %.4f\n",
+                  t->seen.slant_m_q8 / 256.0, chord_m(from, to), hs_degrees(t->seen.bearing),
+                  bearing);
+    is_near(t->seen.slant_m_q8 / 256.0, chord_m(from, to), flown_m + 3);
+    is_near(hs_degrees(t->seen.bearing), bearing, 0.15);
+    is_near(t->seen.ground_m_q8 / 256.0, metres, flown_m + 2);
+    const double bearing_rad = bearing * M_PI / 180;
+    is_near(t->seen.range_rate_mm_s / 1000.0, -150 * cos(bearing_rad) * metres / chord_m(from, to),
+            1);
+    assert_true(says(r, "FTT"));
+    run(r, 2);
+    assert_int_equal(t->state, LM_TRACK_HELD);
+    assert_int_equal(lit_pixels(r), 0); /* the picture is blanked */
+    command(r, drop_it);
+    run(r, 0.2);
+    assert_int_equal(t->state, LM_TRACK_OFF);
+    assert_int_equal(t->loss, LM_TRACK_SOUND);
+    free_rig(r);
+}
+
+TEST(the_sweep_rests_while_a_track_is_held_and_goes_on_behind_it)
+{
+    struct rig *r = rig_at(46.01, 11.03);
+    command(r, track_it);
+    run(r, 0.5);
+    const uint32_t lines = r->unit.count.lines;
+    run(r, 1);
+    assert_int_equal(r->unit.count.lines, lines);
+    press(r, 17); /* the key ends it */
+    run(r, 1);
+    assert_int_equal(track_of(r)->state, LM_TRACK_OFF);
+    assert_true(r->unit.count.lines > lines + 100);
+    free_rig(r);
+}
+
+/* Runs until the track ends; fails if it coasts for a time other than said. */
+static void coasts_then_drops(struct rig *r, enum lm_track_loss loss)
+{
+    const struct lm_track *t = track_of(r);
+    run(r, 0.5);
+    assert_int_equal(t->state, LM_TRACK_COASTING);
+    assert_int_equal(t->loss, loss);
+    run(r, LM_TRACK_COAST_US / 1e6 - 1);
+    assert_int_equal(t->state, LM_TRACK_COASTING);
+    run(r, 1);
+    assert_int_equal(t->state, LM_TRACK_OFF);
+    assert_int_equal(t->loss, loss);
+    assert_true(says(r, "LOST"));
+}
+
+TEST(a_turn_beyond_the_antennas_limit_breaks_the_lock_after_the_coast)
+{
+    struct rig *r = rig_at(46.01, 11.03);
+    command(r, track_it);
+    run(r, 0.5);
+    assert_int_equal(track_of(r)->state, LM_TRACK_HELD);
+    r->bus.nose_deg = 200;
+    coasts_then_drops(r, LM_TRACK_LIMITS);
+    free_rig(r);
+}
+
+TEST(a_hill_between_breaks_the_lock_and_one_that_passes_does_not)
+{
+    struct rig *r = rig_at(46.03, 11.02);
+    command(r, track_it);
+    run(r, 0.5);
+    assert_int_equal(track_of(r)->state, LM_TRACK_HELD);
+    r->bus.height_m = 90; /* below the crests */
+    run(r, 1);
+    assert_int_equal(track_of(r)->state, LM_TRACK_COASTING);
+    assert_int_equal(track_of(r)->loss, LM_TRACK_SHADOW);
+    r->bus.height_m = 2000;
+    run(r, 1);
+    assert_int_equal(track_of(r)->state, LM_TRACK_HELD);
+    r->bus.height_m = 90;
+    run(r, 0.5);
+    coasts_then_drops(r, LM_TRACK_SHADOW);
+    free_rig(r);
+}
+
+TEST(a_radar_that_does_not_send_loses_its_lock)
+{
+    struct rig *r = rig_at(46.01, 11.03);
+    command(r, track_it);
+    run(r, 0.5);
+    press(r, 4); /* OVRD */
+    coasts_then_drops(r, LM_TRACK_SILENT);
+    free_rig(r);
+}
+
+TEST(a_mover_is_acquired_with_range_and_speed_and_lost_when_it_crosses)
+{
+    struct rig *r = gmt_rig(180, 12, 20);
+    const struct lm_track *t = track_of(r);
+    run(r, 1);
+    assert_int_equal(t->state, LM_TRACK_HELD);
+    assert_int_equal(t->kind, LM_TRACK_MOVER);
+    assert_int_equal(t->seen.speed_mm_s, 12000);
+    is_near(t->seen.range_rate_mm_s / 1000.0, -162 * cos(t->seen.angle * 2 * M_PI / 4294967296.0),
+            2);
+    assert_true(says(r, "GMTT") && says(r, "23KT"));
+    moving.heading = hs_bam(90);
+    moving.speed_mm_s = 12000;
+    const struct lm_mover_state now = lm_mover_state_at(&moving, r->unit.exercise.time_us);
+    moving.latitude += t->seen.position.latitude - now.position.latitude;
+    moving.longitude += t->seen.position.longitude - now.position.longitude;
+    coasts_then_drops(r, LM_TRACK_NOTCH);
+    assert_true(says(r, "NOTCH"));
+    free_rig(r);
+}
+
+TEST(nothing_near_the_cursor_is_no_track)
+{
+    struct rig *r = gmt_rig(180, 0.5, 20); /* slower than the gate */
+    run(r, LM_TRACK_SEARCH_US / 1e6 + 0.2);
+    assert_int_equal(track_of(r)->state, LM_TRACK_OFF);
+    assert_int_equal(track_of(r)->loss, LM_TRACK_NOTCH);
+    cursor_to(r, 46.1, 11.1);
+    command(r, track_it);
+    run(r, LM_TRACK_SEARCH_US / 1e6 + 0.2);
+    assert_int_equal(track_of(r)->state, LM_TRACK_OFF);
+    assert_int_equal(track_of(r)->loss, LM_TRACK_NOTHING);
+    free_rig(r);
+}
+
+/* Albersheim's equation (1981) in double precision. */
+TEST(a_track_needs_what_albersheim_says)
+{
+    for (uint32_t log2 = 0; log2 <= LM_LOOKS_LOG2_MAX; log2++) {
+        const double a = log(0.62 / 1e-6), b = log(0.9 / 0.1), n = 1 << log2;
+        const double db =
+            -5 * log10(n) + (6.2 + 4.54 / sqrt(n + 0.44)) * log10(a + 0.12 * a * b + 1.7 * b);
+        is_near(lm_track_needs_db_q8(log2) / 256.0, db, 0.01);
+    }
+}
+
+/* The echo of a point against noise goes with sigma tau / R^4, less the air: in double precision
+ * from the table's anchor. */
+TEST(a_point_stands_over_noise_as_the_radar_equation_says)
+{
+    const struct lm_radar *radar = &lm_radar_default;
+    double worst = 0;
+    for (int k = 0; k < 40; k++) {
+        const double r_m = 4000 + 1700 * k, h_m = 500 + 150 * k;
+        const int row = k % 3;
+        struct lm_receiver_floor f;
+        lm_receiver_floor_at(&f, radar, (uint32_t)(r_m * 256), (int32_t)(h_m * 1024), (uint8_t)row,
+                             LM_FOV_NORM);
+        const double ra = radar->receiver.noise_range_m, ha = radar->receiver.noise_height_m;
+        const double ground = sqrt(ra * ra - ha * ha);
+        const double ga = ha / ground - ground / (8 / 3.0 * 6371000);
+        const double tau = radar->range[row].pulse_ns[0], tau_a = radar->receiver.noise_pulse_ns;
+        const double at_one = radar->receiver.noise_db_q8 / 256.0 - 30 * log10(ra) +
+                              10 * log10(ga) - 20 * log10(tau / tau_a);
+        const double beam =
+            hs_degrees(radar->antenna.azimuth_beam) * M_PI / 180 * sqrt(M_PI / (8 * log(2)));
+        const double noise_dbsm = at_one + 40 * log10(r_m) + 10 * log10(beam) +
+                                  10 * log10(tau * 0.149896229) +
+                                  r_m / 1000 * radar->receiver.air_loss_db_per_km_q16 / 65536;
+        const double off = fabs((f.noise_db_q8 + f.area_db_q8) / 256.0 - noise_dbsm);
+        worst = off > worst ? off : worst;
+    }
+    print_message("# worst %.3f dB\n", worst);
+    assert_true(worst < 0.05);
+}
+
+/* A mover too weak for its range is not acquired; 3 dB around what the equation asks decide. */
+TEST(the_radar_equation_decides_what_is_acquired)
+{
+    struct rig *r = gmt_rig(180, 12, 20);
+    const double over = (track_of(r)->seen.signal_db_q8 -
+                         lm_track_needs_db_q8(lm_radar_default.receiver.noise_looks_log2)) /
+                        256.0;
+    free_rig(r);
+    r = gmt_rig(180, 12, 20 - over + 0.5);
+    assert_int_equal(track_of(r)->state, LM_TRACK_HELD);
+    free_rig(r);
+    r = gmt_rig(180, 12, 20 - over - 0.5);
+    assert_int_equal(track_of(r)->state, LM_TRACK_SEARCHING);
+    assert_int_equal(track_of(r)->loss, LM_TRACK_WEAK);
+    free_rig(r);
+}
+
+TEST(the_ground_ahead_is_ranged_where_the_nose_points_at_it)
+{
+    struct rig *r = fly_rig();
+    command(r, range_it);
+    run(r, 1);
+    assert_int_equal(track_of(r)->state, LM_TRACK_SEARCHING); /* the nose is level or above */
+    assert_int_equal(track_of(r)->kind, LM_TRACK_RANGING);
+    assert_true(says(r, "AGR"));
+    command(r, range_it);
+    run(r, 0.2);
+    assert_int_equal(track_of(r)->state, LM_TRACK_OFF);
+    free_rig(r);
+}
