@@ -19,7 +19,8 @@ $(foreach r,$(ROOMS),$(eval $(O)/firmware/$r/%.o: ROOM := $r))
 # What has no loop over cells or pixels: a board that counts its bytes compiles it for size.
 WITHOUT_LOOPS := base/% table/% bus/% nav/% page/% unit/% map/db map/detail map/tile_cache \
     targets/chips targets/mover targets/signature targets/target targets/target_candidates targets/target_patch \
-    targets/chip_sector targets/chip_patch radar/patch_rain radar/sector display/test_pattern
+    targets/chip_sector targets/chip_patch radar/patch_rain radar/sector radar/track radar/track_sight \
+    display/test_pattern display/symbols display/overlay display/view display/cursor
 $(foreach f,$(WITHOUT_LOOPS),$(eval $(O)/firmware/$f.o: OPT_core := $(OPT_rest)))
 $(call compile, fixed/,    fixed/,    $$(CFLAGS_fixed) $$(OPT_core))
 $(call compile, firmware/, firmware/, $$(call CFLAGS_room,$$(ROOM)) $$(OPT_core))
