@@ -5,8 +5,6 @@
 #include <math.h>
 #include <string.h>
 
-enum { NODE_INSTRUCTOR = 30 };
-
 bool nav_exercise_add_rate(struct nav_exercise *x, const double *value, int count)
 {
     const double from_s = count > 1 ? value[1] : 0;
@@ -59,11 +57,12 @@ int nav_exercise_frames(const struct nav_exercise *x, struct canas_codes *codes,
         return 0;
     }
     int count = 0;
-    frames[count++] = canas_float(codes, CANAS_EXERCISE_RATE, NODE_INSTRUCTOR, rate_at(x, sent_s));
+    frames[count++] =
+        canas_float(codes, CANAS_EXERCISE_RATE, NAV_EXERCISE_NODE, rate_at(x, sent_s));
     if (x->has_seed) {
-        frames[count++] = canas_long(codes, CANAS_EXERCISE_SEED, NODE_INSTRUCTOR, x->seed);
+        frames[count++] = canas_long(codes, CANAS_EXERCISE_SEED, NAV_EXERCISE_NODE, x->seed);
     }
-    frames[count++] = canas_long(codes, CANAS_EXERCISE_TIME, NODE_INSTRUCTOR,
+    frames[count++] = canas_long(codes, CANAS_EXERCISE_TIME, NAV_EXERCISE_NODE,
                                  (int32_t)lround(fmin(nav_exercise_ms(x, sent_s), INT32_MAX)));
     return count;
 }
@@ -154,7 +153,7 @@ static struct canas_frame frame_of(const struct nav_malfunction *m, int which, d
 {
     const double value = m->is_ramp ? m->value[0] * (now_s - m->from_s) / 60 : m->value[which];
     struct canas_frame f =
-        canas_float(codes, CANAS_MALFUNCTION, NODE_INSTRUCTOR, fmax(-180, fmin(180, value)));
+        canas_float(codes, CANAS_MALFUNCTION, NAV_EXERCISE_NODE, fmax(-180, fmin(180, value)));
     f.data[2] = (uint8_t)(m->number + which);
     return f;
 }
@@ -171,9 +170,9 @@ int nav_malfunction_frames(const struct nav_exercise *x, struct canas_codes *cod
         const bool is_over = is_due(m->until_s + period_s, now_s + period_s / 2, period_s);
         for (int k = 0; k < frames_each; k++) {
             if (is_over) {
-                frames[count++] = canas_uchar(codes, CANAS_MALFUNCTION_CLEAR, NODE_INSTRUCTOR,
+                frames[count++] = canas_uchar(codes, CANAS_MALFUNCTION_CLEAR, NAV_EXERCISE_NODE,
                                               (uint8_t)(m->number + k));
-            } else if (is_told && now_s >= m->from_s && now_s < m->until_s) {
+            } else if (is_told && now_s + period_s / 2 >= m->from_s && now_s < m->until_s) {
                 frames[count++] = frame_of(m, k, now_s, codes);
             }
         }

@@ -13,7 +13,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { WORDS_MAX = 10, PRESS_US = 100000, REFUSAL_BYTES = 120 };
+enum { WORDS_MAX = 10, PRESS_US = 100000, REFUSAL_BYTES = 320 };
 
 /* A line may mean two events: a button goes down and up again. */
 struct line_events {
@@ -318,6 +318,92 @@ static bool parse_environment(char **words, int count, struct lm_environment *e)
     return true;
 }
 
+/* Times of the exercise lie on the steps of the bench. */
+static double time_of(const struct line_events *line)
+{
+    return round((double)line->event[0].time_us * 1e-4) * 1e-2;
+}
+
+/* "clock rate RATE", for a clock that is set. */
+static bool parse_rate(struct nav_exercise *x, char **words, int count, struct line_events *line)
+{
+    double rate[2] = {-1, time_of(line)};
+    if (!x->has_clock) {
+        snprintf(line->refusal, sizeof line->refusal,
+                 "no `clock SHOWN_S` stands before this `clock rate`");
+    } else if (count != 4 || !hs_number_within(words[3], 0, 16, &rate[0])) {
+        snprintf(line->refusal, sizeof line->refusal, "`clock rate` needs one value, 0..16");
+    } else if (!nav_exercise_add_rate(x, rate, 2)) {
+        snprintf(line->refusal, sizeof line->refusal,
+                 x->rate_count == NAV_EXERCISE_RATES
+                     ? "is one `clock rate` too many: a script has seven at most"
+                     : "`clock rate` must stand 0.01 s or more behind the `clock` before it");
+    }
+    return !line->refusal[0];
+}
+
+/* "clock SHOWN_S [SEED]" or "clock rate RATE". */
+static bool parse_clock(struct nav_exercise *x, char **words, int count, struct line_events *line)
+{
+    double shown_s, seed = 0;
+    const double rate[2] = {1, time_of(line)};
+    if (count > 2 && strcmp(words[2], "rate") == 0) {
+        return parse_rate(x, words, count, line);
+    }
+    if (x->has_clock) {
+        snprintf(line->refusal, sizeof line->refusal,
+                 "the clock is set already; `clock rate` changes its pace");
+        return false;
+    }
+    if (count < 3 || count > 4 || !hs_number_within(words[2], 0, 2147483, &shown_s) ||
+        (count == 4 && (!hs_number_within(words[3], 0, INT32_MAX, &seed) || seed != floor(seed)))) {
+        snprintf(line->refusal, sizeof line->refusal,
+                 "`clock` needs SHOWN_S, 0..2147483, and perhaps a SEED, 0..2147483647");
+        return false;
+    }
+    x->start_s = shown_s - rate[1];
+    x->has_seed = count == 4;
+    x->seed = (int32_t)seed;
+    x->has_clock = nav_exercise_add_rate(x, rate, 2);
+    return x->has_clock;
+}
+
+/* "break NAME[=VALUE[,VALUE]] [FOR_S]". */
+static bool parse_break(struct nav_exercise *x, char **words, int count, struct line_events *line)
+{
+    char text[96];
+    double for_s;
+    if (count < 3 || count > 4 || strchr(words[2], '@') || strlen(words[2]) > 40 ||
+        (count == 4 && !hs_number_within(words[3], 0.01, 1e6, &for_s))) {
+        snprintf(line->refusal, sizeof line->refusal,
+                 "`break` needs NAME[=VALUE[,VALUE]], and perhaps FOR_S, 0.01 seconds or more");
+        return false;
+    }
+    const double from_s = time_of(line);
+    int length = snprintf(text, sizeof text, "%s@%.2f", words[2], from_s);
+    if (count == 4) {
+        length += snprintf(text + length, sizeof text - (size_t)length, ",%.2f",
+                           from_s + round(for_s * 100) / 100);
+    }
+    const char *const cause = nav_exercise_add_malfunction(x, text);
+    if (cause) {
+        snprintf(line->refusal, sizeof line->refusal, "`break %s` %s", words[2], cause);
+    }
+    return !cause;
+}
+
+static bool is_exercise(const char *word)
+{
+    return strcmp(word, "clock") == 0 || strcmp(word, "break") == 0;
+}
+
+static bool parse_exercise(struct script *s, char **words, int count, struct line_events *line)
+{
+    line->count = 0; /* the bus tells it, not the operator */
+    return (strcmp(words[1], "clock") == 0 ? parse_clock : parse_break)(&s->exercise, words, count,
+                                                                        line);
+}
+
 static bool parse_line(struct script *s, char **words, int count, struct line_events *line)
 {
     static const char *const weathers[] = {"rain", "jam", "weather", "seastate"};
@@ -332,6 +418,9 @@ static bool parse_line(struct script *s, char **words, int count, struct line_ev
     e->time_us = (uint64_t)llround(seconds * 1e6);
     if (lm_radar_find_mode(s->radar, words[1]) >= 0) {
         return parse_sector(s, words, count, line);
+    }
+    if (is_exercise(words[1])) {
+        return parse_exercise(s, words, count, line);
     }
     if (choice(words[1], weathers, 4, &which)) {
         const bool is_understood = parse_environment(words, count, &s->environment);
@@ -444,7 +533,7 @@ static int take_line(struct script *s, const char *path, int line_number, char *
         return hs_error(place, "sort the script by time", "goes back in time");
     }
     s->last_us = parsed.event[0].time_us;
-    return append(s, place, line_number, &parsed);
+    return parsed.count > 0 ? append(s, place, line_number, &parsed) : 0;
 }
 
 static int by_time(const void *a, const void *b)

@@ -204,6 +204,19 @@ check 'so is a scale that is none' bad_script 1 '0 range 30'
 check 'so is a place beyond the pole' bad_script 2 '' '0 sar 91 11 5'
 check 'so is time that goes back' bad_script 2 '5 gm' '4 gm'
 check 'so is a picture outside the folder' bad_script 1 '0 picture ../up'
+check 'so is a malfunction that is none, with those that are' bad_script 2 '0 gm' '1 break heart'
+check 'and what to write instead' said '`break heart` needs one of no-transmit, .*, dead-key=N; landmass-sim --help'
+check 'so is a pace without a clock' bad_script 1 '0 clock rate 2'
+printf '0 clock 100\n2 clock rate 0\n1 break weak-transmit=20\n' | sort -n >"$work/drill.script"
+check 'an exercise of the script is flown' exits 0 "$sim" --db "$db" --bus "$log" --seconds 4 --script "$work/drill.script" \
+    --record "$work/drill.log" --quiet
+"$build/bin/landmass-bus" decode "$work/drill.log" >"$work/drill.txt" 2>/dev/null
+check 'its frames are in the recording' grep -q 'malfunction' "$work/drill.txt"
+check 'which shows the same again' exits 0 "$sim" --db "$db" --replay "$work/drill.log" --quiet
+check 'it is refused where its node is not heard' exits 1 "$sim" --db "$db" --bus "$log" --script "$work/drill.script" --nodes 1,9
+check 'with the node' said 'of node 30, which --nodes leaves out; name it, too'
+check 'and where the bus has no such frames' exits 1 "$sim" --db "$db" --bus "$log" --script "$work/drill.script" --profile xcsoar
+check 'with the profile that has them' said 'fly with --profile canas17'
 check 'a missing script is named' exits 1 "$sim" --db "$db" --bus "$log" --script "$work/nosuch.script"
 check 'with its cause' said 'nosuch.script: cannot be opened: No such file'
 printf '%s\n' '0 range 20' '# far away' '0.5 sar 80 0 5' '0.6 osb 1' '0.9 range 80' >"$work/refused.script"

@@ -55,6 +55,11 @@ static int read_script(struct tables *t, const char *path)
     if (script_read(&script, strcmp(path, "-") == 0 ? NULL : path, &lm_radar_default) != 0) {
         return -1;
     }
+    if (script.exercise.has_clock || script.exercise.malfunction_count > 0) {
+        script_free(&script);
+        return hs_error(path, "tell them by the log",
+                        "`clock` and `break` are of landmass-sim alone");
+    }
     t->controls = calloc((size_t)script.count + 1, sizeof *t->controls);
     for (int i = 0; t->controls && i < script.count; i++) {
         const struct script_event *e = &script.events[i];

@@ -16,6 +16,7 @@
 #include "lm/sensor.h"
 #include "radar/text.h"
 #include "sim/bezel.h"
+#include "sim/drill.h"
 #include "sim/hands.h"
 #include "sim/script.h"
 #include "sim/window.h"
@@ -43,8 +44,10 @@ struct sim {
     struct lm_can can_2;
     struct drv_can_socket socket;
     struct lm_can can;
-    struct hs_atomic_file sent;      /* of --bus-out */
-    struct lm_can heard;             /* the bus behind it */
+    struct hs_atomic_file sent; /* of --bus-out */
+    struct lm_can heard;        /* the bus behind it */
+    struct drill drill;
+    struct lm_can drilled;           /* the bus behind the script's exercise */
     struct hs_atomic_file recording; /* of --record */
     struct recorder recorder;
     struct replay replay;
@@ -81,6 +84,32 @@ static int send_and_log(void *ctx, const struct lm_can_frame *frame)
         (void)drv_can_log_write(s->sent.stream, "can0", s->now_us, frame); /* commit tells */
     }
     return status;
+}
+
+static bool has_exercise(const struct sim *s)
+{
+    return s->script.exercise.has_clock || s->script.exercise.malfunction_count > 0;
+}
+
+/* The exercise of the script beside the bus. */
+static int open_drill(struct sim *s)
+{
+    if (!has_exercise(s)) {
+        return 0;
+    }
+    const uint8_t *const nodes = s->options.nodes;
+    const unsigned node = NAV_EXERCISE_NODE;
+    if (s->bench.unit->bus.profile != &lm_bus_canas17) {
+        return hs_error(s->options.script, "fly with --profile canas17",
+                        "`clock` and `break` are frames of canas17, which this bus is not");
+    }
+    if (s->options.has_nodes && (nodes[node / 8] >> node % 8 & 1) == 0) {
+        return hs_error(s->options.script, "name it, too",
+                        "`clock` and `break` are of node %u, which --nodes leaves out", node);
+    }
+    s->drilled = s->can;
+    s->can = drill_open(&s->drill, &s->script.exercise, &s->drilled);
+    return 0;
 }
 
 static int open_sent_log(struct sim *s)
@@ -231,6 +260,9 @@ static int step(struct sim *s, uint64_t now_us)
     }
     if (s->log_file_2) {
         drv_can_log_set_now(&s->log_2, now_us);
+    }
+    if (has_exercise(s)) {
+        drill_advance(&s->drill, now_us, STEP_US);
     }
     const uint32_t before = s->bench.pictures;
     s->now_us = now_us;
@@ -738,7 +770,8 @@ static int run_flight(struct sim *s, const struct bench_bus *bus)
     warn_of_database(s);
     /* What an interface lets through is what the unit hears, which the database may say. */
     if (open_bus(s) != 0 || open_second_log(s) != 0 || open_sent_log(s) != 0 ||
-        script_read(&s->script, o->script, s->bench.unit->map.radar) != 0 || open_bezel(s) != 0) {
+        script_read(&s->script, o->script, s->bench.unit->map.radar) != 0 || open_drill(s) != 0 ||
+        open_bezel(s) != 0) {
         return -1;
     }
     int status = fly(s);

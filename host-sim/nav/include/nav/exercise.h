@@ -7,6 +7,9 @@
 
 #include <stdbool.h>
 
+/* NODE: who sends them. */
+enum { NAV_EXERCISE_NODE = 30 };
+
 enum { NAV_EXERCISE_RATES = 8, NAV_EXERCISE_FRAMES = 3, NAV_MALFUNCTIONS = 12 };
 
 /* A malfunction, told once a second from from_s until before until_s, and then cleared. */

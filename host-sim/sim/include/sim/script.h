@@ -12,6 +12,9 @@
  *   SECONDS rain LAT LON RADIUS_KM MM_PER_H   one more circle of rain
  *   SECONDS jam LAT LON DB                    one more jammer, over the noise at ten nautical miles
  *   SECONDS seastate 0..8 [WIND_DEG]     degrees from north that the wind comes from
+ *   SECONDS clock SHOWN_S [SEED]              an exercise clock that shows SHOWN_S then; once
+ *   SECONDS clock rate RATE                   seconds of the exercise in a second, 0..16
+ *   SECONDS break NAME[=VALUE[,VALUE]] [FOR_S]  a malfunction, named as landmass-nav names it
  *   SECONDS gain DB                           -30..30
  *   SECONDS freeze on|off
  *   SECONDS osb N [HELD_S]                    press option select button 1..20, for 0.1 s or HELD_S
@@ -33,6 +36,7 @@
 #include "lm/controls.h"
 #include "lm/port.h"
 #include "lm/radar.h"
+#include "nav/exercise.h"
 
 struct script_event {
     uint64_t time_us;
@@ -47,6 +51,7 @@ struct script {
     const struct lm_radar *radar;      /* borrowed */
     int32_t mode, field, range_nm;     /* selected by the lines so far; -1 behind a key */
     struct lm_environment environment; /* of the line read last: rain and jammers add up */
+    struct nav_exercise exercise;      /* what all the lines say, for the bus (sim/drill.h) */
     struct script_event *events;       /* owned */
     int count, next;
     char path[256];   /* of the file, as reports name it; cut off if it is longer */

@@ -241,6 +241,101 @@ TEST(the_exercise_clock_is_told_once_a_second_and_when_its_rate_changes)
     }
 }
 
+/* The number of a kind's first frame and of its last one, by type, and how many there are. */
+struct told {
+    int set, cleared;
+    double first_s, last_s, clear_s, value;
+};
+
+static struct told told_of(const struct flight *f, int number)
+{
+    struct told t = {.first_s = -1};
+    const double zero_s = (double)f->track.fix[0].time_us * 1e-6;
+    for (int i = 0; i < f->log.count; i++) {
+        const struct decoded_frame *x = &f->log.frame[i];
+        const double at_s = (double)x->time_us * 1e-6 - zero_s;
+        if (x->id == 1825 && x->data[2] == number) {
+            assert_int_equal(x->data[0], 30);
+            assert_true(decode_float(x, &t.value));
+            t.first_s = t.set++ == 0 ? at_s : t.first_s;
+            t.last_s = at_s;
+        } else if (x->id == 1826 && x->data[4] == number) {
+            assert_int_equal(x->data[0], 30);
+            assert_int_equal(x->data[1], 10); /* UCHAR */
+            t.clear_s = at_s;
+            t.cleared++;
+        }
+    }
+    return t;
+}
+
+/* By docs/bus.md, "Malfunctions": the number is the service code, each once a second, and cleared
+ * by one frame. The beginning is told at once, although seconds of today, as a double holds them,
+ * are not exact. */
+TEST(malfunctions_are_told_once_a_second_and_then_cleared)
+{
+    const char *const words[] = {"weak-transmit=20.5@3.4,7.4", "lost-sector=-30,10@5,9",
+                                 "antenna-drift=-60@10", "no-transmit", "dead-key=28@2,3"};
+    struct flight f;
+    make_flight(&f);
+    struct nav_send_options options = usual;
+    for (size_t i = 0; i < sizeof words / sizeof *words; i++) {
+        assert_null(nav_exercise_add_malfunction(&options.exercise, words[i]));
+    }
+    send_track(&f, &options);
+    struct told t = told_of(&f, 1);
+    assert_true(fabs(t.first_s - 3.41) < 0.03 && t.value == 20.5);
+    assert_int_equal(t.set, 5); /* at 3.4, 4, 5, 6 and 7 s */
+    assert_int_equal(t.cleared, 1);
+    assert_true(fabs(t.clear_s - 7.41) < 0.03);
+    t = told_of(&f, 5);
+    assert_true(t.set >= 4 && t.set <= 5 && t.cleared == 1 && t.value == -30);
+    assert_true(t.first_s > 4.98 && t.last_s < 9);
+    t = told_of(&f, 6);
+    assert_true(t.set >= 4 && t.set <= 5 && t.cleared == 1 && t.value == 10);
+    t = told_of(&f, 4); /* it grows by a degree a second */
+    assert_true(t.cleared == 0 && fabs(t.value + (t.last_s - 10)) < 0.05);
+    t = told_of(&f, 0);
+    assert_true(t.set >= 20 && t.set <= 22 && t.cleared == 0 && t.value == 0);
+    t = told_of(&f, 9);
+    assert_true(t.set >= 1 && t.cleared == 1 && t.value == 28);
+    assert_int_equal(told_of(&f, 2).set + told_of(&f, 3).set + told_of(&f, 7).set, 0);
+    forget(&f);
+}
+
+TEST(malfunctions_that_no_set_has_are_not_taken)
+{
+    static const char *const bad[] = {"",
+                                      "heart",
+                                      "noise",
+                                      "noise=",
+                                      "noise=-1",
+                                      "noise=61",
+                                      "noise=6,6",
+                                      "noise=nan",
+                                      "noise=6@",
+                                      "noise=6@-1",
+                                      "noise=6@x",
+                                      "noise=6@5,5",
+                                      "no-transmit=1",
+                                      "tilt=31",
+                                      "dead-key=0",
+                                      "dead-key=29",
+                                      "lost-sector=1",
+                                      "lost-sector=2,1",
+                                      "antenna-drift=61"};
+    struct nav_exercise x = {0};
+    for (size_t i = 0; i < sizeof bad / sizeof *bad; i++) {
+        if (!nav_exercise_add_malfunction(&x, bad[i])) {
+            fail_msg("taken: %s", bad[i]);
+        }
+    }
+    assert_int_equal(x.malfunction_count, 0);
+    for (int i = 0; i <= NAV_MALFUNCTIONS; i++) {
+        assert_int_equal(nav_exercise_add_malfunction(&x, "noise=6") == NULL, i < NAV_MALFUNCTIONS);
+    }
+}
+
 TEST(weather_out_of_range_is_not_taken)
 {
     static const double bad[][6] = {

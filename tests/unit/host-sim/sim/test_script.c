@@ -2,8 +2,10 @@
 #include "sim/script.h"
 
 #include "hs/angle.h"
+#include "lm/malfunction.h"
 #include "lm/radar.h"
 
+#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -296,9 +298,70 @@ TEST(there_is_no_more_rain_and_jamming_than_the_unit_has_room_for)
     assert_true(is_accepted("0 rain 1 2 3 4\n0 weather fair\n", LM_RAINS_MAX + 1));
 }
 
+TEST(what_a_script_says_of_an_exercise_is_for_the_bus_and_no_control)
+{
+    struct script s;
+    assert_int_equal(read_text(&s,
+                               "2.5 clock 100 4711\n3 break lost-sector=-30,10 4\n4 clock rate 0\n"
+                               "5 break no-transmit\n6 designate\n"),
+                     0);
+    assert_int_equal(s.count, 1);
+    assert_int_equal(at(&s, 6).kind, LM_CONTROL_DESIGNATE);
+    const struct nav_exercise *x = &s.exercise;
+    assert_true(x->has_clock && x->has_seed);
+    assert_int_equal(x->seed, 4711);
+    assert_true(nav_exercise_ms(x, 2.5) == 100000 && nav_exercise_ms(x, 9) == 101500);
+    assert_int_equal(x->malfunction_count, 2);
+    assert_int_equal(x->malfunction[0].number, LM_MALFUNCTION_LOST_FROM);
+    assert_true(x->malfunction[0].from_s == 3 && x->malfunction[0].until_s == 7);
+    assert_true(x->malfunction[0].value[0] == -30 && x->malfunction[0].value[1] == 10);
+    assert_int_equal(x->malfunction[1].number, LM_MALFUNCTION_NO_TRANSMIT);
+    assert_true(x->malfunction[1].from_s == 5 && isinf(x->malfunction[1].until_s));
+    script_free(&s);
+}
+
+TEST(there_are_no_more_malfunctions_and_rates_than_room)
+{
+    freopen("/dev/null", "w", stderr);
+    assert_true(is_accepted("0 break noise=6\n", NAV_MALFUNCTIONS));
+    assert_false(is_accepted("0 break noise=6\n", NAV_MALFUNCTIONS + 1));
+    char text[400] = "0 clock 0\n";
+    for (int i = 1; i < NAV_EXERCISE_RATES; i++) {
+        snprintf(text + strlen(text), sizeof text - strlen(text), "%d clock rate 2\n", i);
+    }
+    assert_true(is_accepted(text, 1));
+    strcat(text, "9 clock rate 2\n");
+    assert_false(is_accepted(text, 1));
+}
+
 TEST(commands_that_are_none_are_refused)
 {
-    const char *const bad[] = {"0 osb\n",
+    const char *const bad[] = {"0 clock\n",
+                               "0 clock -1\n",
+                               "0 clock 2147484\n",
+                               "0 clock 1 -1\n",
+                               "0 clock 1 0.5\n",
+                               "0 clock 1 2 3\n",
+                               "0 clock 1\n1 clock 1\n",
+                               "0 clock rate 1\n",
+                               "0 clock 1\n1 clock rate\n",
+                               "0 clock 1\n1 clock rate 17\n",
+                               "0 clock 1\n1 clock rate -1\n",
+                               "0 clock 1\n1 clock rate nan\n",
+                               "0 clock 1\n1 clock rate 1 1\n",
+                               "0 clock 1\n0 clock rate 2\n",
+                               "0 break\n",
+                               "0 break heart\n",
+                               "0 break noise\n",
+                               "0 break noise=61\n",
+                               "0 break noise=6 0\n",
+                               "0 break noise=6 nan\n",
+                               "0 break noise=6@1\n",
+                               "0 break noise=6 1 1\n",
+                               "0 break lost-sector=10,-10\n",
+                               "0 break dead-key=29\n",
+                               "0 break noise=6666666666666666666666666666666666666666\n",
+                               "0 osb\n",
                                "0 osb 0\n",
                                "0 osb 21\n",
                                "0 osb 1.5\n",
