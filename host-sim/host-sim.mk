@@ -18,6 +18,7 @@ $(call host_library, netem,        tracer gis lib fixed firmware,               
 $(call host_library, nav,          lib,                                                 proj expat zlib libzip)
 $(call host_library, bus,          lib fixed firmware drivers)
 $(call host_library, dis,          lib fixed firmware drivers,                          libpcap)
+$(call host_library, ios,          image lib fixed firmware drivers)
 $(call host_library, scene,        lib,                                                 gdal)
 $(call host_library, reference,    lib fixed firmware.h,                                liblz4)
 $(call host_library, sim,          nav lib fixed firmware,                              sdl2)
@@ -31,6 +32,7 @@ $(call host_program, realradar, realradar gis lib fixed firmware)
 $(call host_program, nav,       nav lib fixed firmware drivers)
 $(call host_program, bus,       bus lib fixed firmware drivers)
 $(call host_program, dis,       dis image lib fixed firmware drivers)
+$(call host_program, ios,       ios image lib fixed firmware drivers,      libwebsockets)
 $(call host_program, scene,     scene lib)
 $(call host_program, reference, reference lib fixed firmware.h)
 $(call host_program, sim,       sim nav radar bus lib fixed firmware drivers bench)
@@ -52,5 +54,5 @@ $(VECTOR_LOOPS:%=$(O)/host-sim/%.o): EXTRA_CFLAGS := -O3 -fno-math-errno -fno-tr
 
 # The Debian package of the tools. HAS_AVX2= on the command line makes programs for any processor of this kind.
 .PHONY: tools-package
-tools-package: $(HOST_TOOLS)
+tools-package: $(HOST_TOOLS) $(O)/ios/.made
 	@sh host-sim/package/build.sh $(O)/bin build/packages

@@ -55,14 +55,14 @@ endef
 host_library = $(eval $(call host_library_rules,$(strip $(1)),$(strip $(2)),$(strip $(3)))) \
     $(eval $(call host_library_flags,$(strip $(1))))
 
-# $(call host_program,NAME,SEES): host-sim/programs/NAME/*.c, which become bin/landmass-NAME.
+# $(call host_program,NAME,SEES,PACKAGES): host-sim/programs/NAME/*.c, which become bin/landmass-NAME.
 # host_generator is the same for a program that makes sources, built where make/generated.mk says.
 define host_program_rules
 HOST_PROGRAMS += $(1)
 HOST_SEES_programs/$(1) := $(2)
 $(O)/host-sim/programs/$(1)/%.o: CFLAGS_part := $$(call CFLAGS_host_part,programs/$(1))
 $(O)/bin/landmass-$(1): $(call objs,$(wildcard host-sim/programs/$(1)/*.c)) $(call host_archives,$(2))
-$(O)/bin/landmass-$(1): LDLIBS = $$(call host_links,$(2))
+$(O)/bin/landmass-$(1): LDLIBS = $$(call host_links,$(2)) $(if $(3),$$(call pkgs,libs,$(3)))
 endef
-host_generator = $(eval $(call host_program_rules,$(strip $(1)),$(strip $(2))))
-host_program   = $(call host_generator,$(1),$(2))$(eval PROGRAMS += $(O)/bin/landmass-$(strip $(1)))
+host_generator = $(eval $(call host_program_rules,$(strip $(1)),$(strip $(2)),$(strip $(3))))
+host_program   = $(call host_generator,$(1),$(2),$(3))$(eval PROGRAMS += $(O)/bin/landmass-$(strip $(1)))

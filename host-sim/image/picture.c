@@ -102,15 +102,8 @@ int image_view_cells(const struct image *image, struct image_view *v, int level)
     return 0;
 }
 
-/* What a drawing remembers of the tiles it has met. */
-struct look {
-    const struct image *image;
-    uint8_t *checked; /* of each entry: 0 not yet, 1 sound, 2 damaged, 3 without a tile */
-    unsigned damaged;
-};
-
-static const struct lm_tile *sound_tile(struct look *l, uint32_t entry, uint8_t level, uint32_t row,
-                                        uint32_t column)
+static const struct lm_tile *sound_tile(struct image_look *l, uint32_t entry, uint8_t level,
+                                        uint32_t row, uint32_t column)
 {
     const struct lm_tile *t = image_entry_tile(l->image, entry);
     if (l->checked[entry] == 0 && !t) {
@@ -123,16 +116,20 @@ static const struct lm_tile *sound_tile(struct look *l, uint32_t entry, uint8_t 
     return l->checked[entry] == 1 ? t : NULL;
 }
 
-/* A place in the image: the tile and the cell, at the finest level that has it from `level` up. */
-struct spot {
-    const struct lm_tile *tile;
-    uint8_t shift, zone;
-    int row, column;
-    double north, east; /* position in the cell, 0..1 */
-};
+int image_look_begin(struct image_look *l, const struct image *image)
+{
+    *l = (struct image_look){.image = image, .checked = calloc(image->header.entry_count + 1u, 1)};
+    return l->checked ? 0 : hs_error("image", NULL, "out of memory");
+}
 
-static bool find_spot(struct look *l, int level, int64_t latitude, uint32_t longitude,
-                      struct spot *s)
+void image_look_end(struct image_look *l)
+{
+    free(l->checked);
+    *l = (struct image_look){0};
+}
+
+bool image_look_at(struct image_look *l, int level, int64_t latitude, uint32_t longitude,
+                   struct image_spot *s)
 {
     const struct image *image = l->image;
     for (int k = level; k < image->header.lod_count; k++) {
@@ -155,7 +152,7 @@ static bool find_spot(struct look *l, int level, int64_t latitude, uint32_t long
     return false;
 }
 
-static double spot_elevation(const struct spot *s)
+static double spot_elevation(const struct image_spot *s)
 {
     const int r = s->row, c = s->column;
     const double sw = (double)image_post_q6(s->tile, r, c),
@@ -167,7 +164,7 @@ static double spot_elevation(const struct spot *s)
 }
 
 /* Lambert's law, sun 45 degrees high in the north-west, flat ground at IMAGE_SHADE_FLAT / 255. */
-static double spot_shade(const struct spot *s, int64_t latitude)
+static double spot_shade(const struct image_spot *s, int64_t latitude)
 {
     const int r = s->row, c = s->column;
     const double sw = (double)image_post_q6(s->tile, r, c),
@@ -186,9 +183,8 @@ static double spot_shade(const struct spot *s, int64_t latitude)
     return fmax(0.0, sun) / sqrt(0.5) * IMAGE_SHADE_FLAT;
 }
 
-/* The value of a plane at a place; NaN where there is no data. */
-static double spot_value(const struct image *image, enum image_plane plane, const struct spot *s,
-                         int64_t latitude)
+double image_spot_value(const struct image *image, enum image_plane plane,
+                        const struct image_spot *s, int64_t latitude)
 {
     const uint16_t cell = image_tile_cell(s->tile, s->row, s->column);
     if (image_cell_class(cell) == LM_DB_CLASS_NONE) {
@@ -208,7 +204,7 @@ static double spot_value(const struct image *image, enum image_plane plane, cons
     }
 }
 
-static void read_values(struct look *l, const struct image_view *v, int first, int rows,
+static void read_values(struct image_look *l, const struct image_view *v, int first, int rows,
                         float *values)
 {
     const double north_step = (double)(v->area.north - v->area.south) / v->height;
@@ -217,15 +213,15 @@ static void read_values(struct look *l, const struct image_view *v, int first, i
         const int64_t latitude = v->area.north - (int64_t)((first + y + 0.5) * north_step);
         for (int x = 0; x < v->width; x++) {
             const uint32_t longitude = v->area.west + (uint32_t)((x + 0.5) * east_step);
-            struct spot s;
-            const bool is_there = find_spot(l, v->level, latitude, longitude, &s);
+            struct image_spot s;
+            const bool is_there = image_look_at(l, v->level, latitude, longitude, &s);
             values[(size_t)y * (size_t)v->width + (size_t)x] =
-                is_there ? (float)spot_value(l->image, v->plane, &s, latitude) : NAN;
+                is_there ? (float)image_spot_value(l->image, v->plane, &s, latitude) : NAN;
         }
     }
 }
 
-static void read_all(struct look *l, const struct image_view *v, float *values)
+static void read_all(struct image_look *l, const struct image_view *v, float *values)
 {
     struct hs_progress progress;
     hs_progress_begin(&progress, image_plane_names[v->plane], (uint64_t)v->height);
@@ -238,13 +234,13 @@ static void read_all(struct look *l, const struct image_view *v, float *values)
 
 int image_view_read(const struct image *image, struct image_view *v, int y, int rows, float *values)
 {
-    struct look l = {.image = image, .checked = calloc(image->header.entry_count + 1u, 1)};
-    if (!l.checked) {
-        return hs_error("image", NULL, "out of memory");
+    struct image_look l;
+    if (image_look_begin(&l, image) != 0) {
+        return -1;
     }
     read_values(&l, v, y, rows, values);
     v->damaged_tiles += l.damaged;
-    free(l.checked);
+    image_look_end(&l);
     return 0;
 }
 
@@ -316,11 +312,12 @@ static void paint(const struct image *image, const struct image_view *v, const f
 
 int image_view_draw(const struct image *image, struct image_view *v, uint8_t *pixels)
 {
-    struct look l = {.image = image, .checked = calloc(image->header.entry_count + 1u, 1)};
+    struct image_look l;
+    if (image_look_begin(&l, image) != 0) {
+        return -1;
+    }
     float *values = malloc((size_t)v->width * (size_t)v->height * sizeof *values);
-    int result = l.checked && values
-                     ? 0
-                     : hs_error("picture", "choose a smaller --max-size", "out of memory");
+    int result = values ? 0 : hs_error("picture", "choose a smaller --max-size", "out of memory");
     if (result == 0) {
         read_all(&l, v, values);
         v->damaged_tiles = l.damaged;
@@ -332,7 +329,7 @@ int image_view_draw(const struct image *image, struct image_view *v, uint8_t *pi
     if (result == 0) {
         paint(image, v, values, pixels);
     }
-    free(l.checked);
+    image_look_end(&l);
     free(values);
     return result;
 }

@@ -98,3 +98,13 @@ int hs_png_write_xrgb(const char *path, const uint32_t *pixels, int width, int h
                               unpack_xrgb};
     return write_picture(path, &p);
 }
+
+int hs_png_encode_rgb(FILE *stream, const uint8_t *pixels, int width, int height)
+{
+    const struct picture p = {pixels,  width, height, 3 * (size_t)width, PNG_COLOR_TYPE_RGB,
+                              copy_rgb};
+    uint8_t *row = malloc(p.stride);
+    const int status = row ? encode(stream, &p, row) : -1;
+    free(row);
+    return status;
+}

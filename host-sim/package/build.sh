@@ -5,7 +5,7 @@ set -eu
 bin=$1 out=$2
 here=$(dirname "$0")
 top=$here/../..
-tools='bus db dis nav netem radar realradar reference scene sim target'
+tools='bus db dis ios nav netem radar realradar reference scene sim target'
 arch=$(dpkg --print-architecture)
 version=$("$bin/landmass-db" --version | sed 's/.* //')
 # The package is reproducible: its times are those of the last commit.
@@ -36,6 +36,8 @@ done
 mkdir -p "$root/usr/share/landmass"
 install -m 644 "$top"/host-sim/programs/db/classes/* "$top"/host-sim/programs/radar/tables/* \
     "$top"/host-sim/nav/share/* "$root/usr/share/landmass"
+cp -r "$bin/../ios" "$root/usr/share/landmass/ios"
+rm "$root/usr/share/landmass/ios/.made"
 mkdir -p "$doc/docs"
 install -m 644 "$top"/docs/*.md "$doc/docs"
 gzip -9nc "$top/CHANGELOG.md" >"$doc/CHANGELOG.md.gz"

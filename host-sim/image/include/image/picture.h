@@ -52,4 +52,34 @@ int image_view_read(const struct image *image, struct image_view *view, int y, i
  * checksum fails are left black and counted. Returns 0, or -1 with the error reported. */
 int image_view_draw(const struct image *image, struct image_view *view, uint8_t *pixels);
 
+/* ---- single places ---- */
+
+/* What a drawing remembers of the tiles it has met. */
+struct image_look {
+    const struct image *image;
+    uint8_t *checked; /* of each entry: 0 not yet, 1 sound, 2 damaged, 3 without a tile */
+    unsigned damaged; /* tiles whose checksum fails */
+};
+
+/* A place in the image: the tile and the cell. The tile is valid as image_entry_tile says. */
+struct image_spot {
+    const struct lm_tile *tile;
+    uint8_t shift, zone;
+    int row, column;
+    double north, east; /* position in the cell, 0..1 */
+};
+
+/* Begin to look at an image, which must outlive it; and end. Returns 0, or -1 with the error
+ * reported (no memory). */
+int image_look_begin(struct image_look *look, const struct image *image);
+void image_look_end(struct image_look *look);
+
+/* Find a place at the finest level that has it from `level` up. False if none has. */
+bool image_look_at(struct image_look *look, int level, int64_t latitude, uint32_t longitude,
+                   struct image_spot *spot);
+
+/* The value of a plane at a place; NAN where there is no data. */
+double image_spot_value(const struct image *image, enum image_plane plane,
+                        const struct image_spot *spot, int64_t latitude);
+
 #endif

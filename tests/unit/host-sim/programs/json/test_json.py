@@ -462,6 +462,17 @@ def dis():
     assert entity["id"] == "1:2:3" and entity["marking"] == "CAR" and entity["target_kind"] == "car"
 
 
+def ios():
+    os.makedirs(here("site"), exist_ok=True)
+    with open(here("site/index.html"), "w") as file:
+        file.write("<title>station</title>")
+    document, text = run("ios", "--image", here("image.lmdb"), "--site", here("site"), "--port", "0", "--seconds", "0.2")
+    r = document["report"]
+    assert [r["pages"], r["requests"], r["frames_heard"], r["frames_sent"], r["frames_not_sent"]] == \
+        find(r"^(\d+) pages, (\d+) requests; (\d+) frames heard, (\d+) sent, (\d+) not sent", text) == [0, 0, 0, 0, 0]
+    assert len(r["refused"]) == 13 and sum(r["refused"].values()) == 0
+
+
 def nav():
     document, text = run("nav", "--straight", "42.045,-29.18,90,3000,180", "--seconds", "20", "--out", here("flight.log"))
     r = document["report"]
@@ -794,7 +805,7 @@ def the_document_lists_every_command():
 CHECKS = {"db import": db_import, "db train": db_train, "db segment": db_segment, "db correct": db_correct,
           "db vectors": db_vectors, "db reflect": db_reflect, "db infrared": db_infrared,
           "db build": db_build, "db inspect": db_inspect, "db convert": db_convert, "db verify": db_verify, "db qgis": db_qgis, "db export": db_export,
-          "db picture": db_picture, "scene": scene, "nav": nav, "dis": dis, "bus decode": bus_decode, "bus fields": bus_fields,
+          "db picture": db_picture, "scene": scene, "nav": nav, "dis": dis, "ios": ios, "bus decode": bus_decode, "bus fields": bus_fields,
           "bus table": bus_table, "bus dbc": bus_dbc, "bus filters": bus_filters, "bus reports": bus_reports,
           "bus controls": bus_controls, "sim": sim,
           "radar print": radar_print, "radar check": radar_check, "radar record": radar_record,
