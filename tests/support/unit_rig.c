@@ -35,7 +35,7 @@ static int receive(void *ctx, struct lm_can_frame *frame)
                  {321, b->nose_deg},
                  {1039, b->speed_m_s},
                  {1040, 0},
-                 {311, 2},
+                 {311, b->pitch_deg},
                  {312, 0},
                  {303, 0},
                  {305, b->turn_deg_s},
@@ -98,6 +98,7 @@ struct rig *make_rig(void)
     r->bus.stop_us = UINT64_MAX;
     r->bus.speed_m_s = 150;
     r->bus.height_m = 2000;
+    r->bus.pitch_deg = 2;
     return r;
 }
 

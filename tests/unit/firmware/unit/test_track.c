@@ -284,6 +284,15 @@ TEST(the_ground_ahead_is_ranged_where_the_nose_points_at_it)
     assert_int_equal(track_of(r)->state, LM_TRACK_SEARCHING); /* the nose is level or above */
     assert_int_equal(track_of(r)->kind, LM_TRACK_RANGING);
     assert_true(says(r, "AGR"));
+    /* Twenty degrees down, over a meridian on which the hills are 100 m high. */
+    r->bus.pitch_deg = -20;
+    run(r, 1);
+    assert_int_equal(track_of(r)->state, LM_TRACK_HELD);
+    const double slant_m = 1900 / sin(20 * M_PI / 180);
+    print_message("# slant %.1f m, a plane's %.1f\n", track_of(r)->seen.slant_m_q8 / 256.0,
+                  slant_m);
+    is_near(track_of(r)->seen.slant_m_q8 / 256.0, slant_m, 30);
+    is_near(track_of(r)->seen.elevation_m_q10 / 1024.0, 100, 5);
     command(r, range_it);
     run(r, 0.2);
     assert_int_equal(track_of(r)->state, LM_TRACK_OFF);
