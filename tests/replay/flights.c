@@ -203,7 +203,7 @@ static struct lm_control environment(struct flight *f)
 static struct lm_control any_control(struct flight *f)
 {
     const int32_t value = (int32_t)hs_rng_below(&f->rng, 2001) - 1000;
-    switch (hs_rng_below(&f->rng, 14)) {
+    switch (hs_rng_below(&f->rng, 16)) {
     case 0:
         return (struct lm_control){.kind = LM_CONTROL_SECTOR,
                                    .sector = {value & 3, value >> 2 & 3}};
@@ -239,6 +239,10 @@ static struct lm_control any_control(struct flight *f)
         return lm_control_slew(value, -value);
     case 12:
         return lm_control_designate();
+    case 13:
+        return (struct lm_control){.kind = LM_CONTROL_TRACK};
+    case 14:
+        return (struct lm_control){.kind = LM_CONTROL_RANGING};
     default:
         return happens(f, 2) ? lm_control_drop()
                              : (struct lm_control){.kind = LM_CONTROL_RANGE, .range_nm = 10};
