@@ -100,8 +100,10 @@ bench-zcu102: zcu102 ## Count the instructions of a flight there, by stage and m
 	@$(MAKE) --no-print-directory $(PROGRAMS) $(ZCU102_TOOLS)
 	@sh bsp/zcu102/run.sh $(O) count
 
-coverage: deps ## Print what share of fixed and firmware the unit tests and golden pictures run
-	@$(MAKE) --no-print-directory -j2 O=build/coverage OPT='-O1 -g --coverage' OPT_core= coverage-built
+COUNTED := -fprofile-instr-generate
+coverage: deps ## Print the share of lines, branches and conditions of fixed and firmware that unit tests and golden pictures run
+	@$(MAKE) --no-print-directory -j2 CC=clang-19 O=build/coverage OPT='-O1 -g' LDFLAGS=$(COUNTED) \
+	    OPT_core='$(COUNTED) -fcoverage-mapping -fcoverage-mcdc' coverage-built
 
 figures: deps ## Print size, stack, instructions and coverage beside those of the last release
 	@sh tests/figures/figures.sh $(O)
@@ -126,9 +128,11 @@ check-unit: $(UNIT_TESTS)
 	@sh tests/run.sh $(O) $(UNIT_TESTS)
 
 .PHONY: coverage-built
-coverage-built: $(UNIT_TESTS)
-	@find $(O) -name '*.gcda' -delete
-	@sh tests/run.sh $(O) $(UNIT_TESTS) >$(O)/tests.log || tail -n 1 $(O)/tests.log
-	@python3 -B tests/figures/coverage.py $(O)
+coverage-built: $(UNIT_TESTS) $(O)/every_object
+	@rm -rf $(O)/profiles && mkdir -p $(O)/profiles
+	@LLVM_PROFILE_FILE=$(CURDIR)/$(O)/profiles/%2m.profraw sh tests/run.sh $(O) $(UNIT_TESTS) >$(O)/tests.log || tail -n 1 $(O)/tests.log
+	@python3 -B tests/figures/coverage.py $(O) $(O)/every_object
+$(O)/every_object: $(LIB_firmware) $(LIB_fixed)
+	@echo 'int main(void) { return 0; }' | $(CC) $(LDFLAGS) -x c - -x none -Wl,--whole-archive $^ -Wl,--no-whole-archive -o $@
 
 -include $(shell find $(O) -type f -name '*.d' 2>/dev/null)

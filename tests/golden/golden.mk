@@ -2,7 +2,7 @@
 # variants of make/variants.mk, by clang at its highest level and under the sanitizers.
 GOLDEN := $(O)/bin/tests/golden
 # A build by clang anyhow (make check-clang) or for coverage draws them once.
-GOLDEN_VARIANTS := $(if $(findstring clang,$(CC))$(findstring coverage,$(OPT)),,golden-clang golden-sanitized)
+GOLDEN_VARIANTS := $(if $(findstring clang,$(CC))$(findstring coverage,$(O)),,golden-clang golden-sanitized)
 TESTS += $(GOLDEN)/test_golden
 GOLDEN_PARTS := $(patsubst %,$(O)/tests/golden/%.o,golden golden_flight golden_scene golden_signature) \
     $(LIB_support) $(LIB_hs) $(LIB_firmware) $(LIB_fixed)

@@ -1,7 +1,7 @@
 # Flights of random events, recorded by one build of the firmware and shown again by others: as the product is built, by
 # clang at its highest level, under the sanitizers, and by the panel's processor (as tests/golden does).
 REPLAY := $(O)/bin/tests/replay
-REPLAY_VARIANTS := $(if $(findstring clang,$(CC))$(findstring coverage,$(OPT)),,flights-clang flights-sanitized)
+REPLAY_VARIANTS := $(if $(findstring clang,$(CC))$(findstring coverage,$(O)),,flights-clang flights-sanitized)
 REPLAY_PARTS := $(O)/tests/replay/flights.o $(LIB_record) $(LIB_support) $(LIB_hs) $(LIB_firmware) $(LIB_fixed)
 $(REPLAY)/flights: $(REPLAY_PARTS)
 $(REPLAY)/flights-clang: $(REPLAY_PARTS:$(O)/%=$(O)/clang/%)

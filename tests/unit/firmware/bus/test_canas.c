@@ -565,6 +565,9 @@ TEST(every_malformed_frame_is_refused_for_its_own_reason)
         {"24:00:00", bus_frame(1200, 15, 0, 0x18000000, 0), LM_BUS_OUT_OF_RANGE},
         {"12:60:00", bus_frame(1200, 15, 0, 0x0c3c0000, 0), LM_BUS_OUT_OF_RANGE},
         {"12:30:60", bus_frame(1200, 15, 0, 0x0c1e3c00, 0), LM_BUS_OUT_OF_RANGE},
+        {"23:58:60", bus_frame(1200, 15, 0, 0x173a3c00, 0), LM_BUS_OUT_OF_RANGE},
+        {"22:59:60", bus_frame(1200, 15, 0, 0x163b3c00, 0), LM_BUS_OUT_OF_RANGE},
+        {"23:59:61", bus_frame(1200, 15, 0, 0x173b3d00, 0), LM_BUS_OUT_OF_RANGE},
         {"24:60:60", bus_frame(1200, 15, 0, 0x183c3c00, 0), LM_BUS_OUT_OF_RANGE},
     };
     for (size_t i = 0; i < sizeof tests / sizeof *tests; i++) {
@@ -579,6 +582,49 @@ TEST(every_malformed_frame_is_refused_for_its_own_reason)
         }
         assert_int_equal(c.count.outcome[outcome], 1);
         assert_int_equal(c.count.frames, 1);
+    }
+}
+
+TEST(an_assumed_type_excuses_neither_the_length_nor_the_sender)
+{
+    const struct lm_can_frame good = bus_frame(1036, 0, 0, 472500445, 0);
+    const struct {
+        struct lm_can_frame frame;
+        enum lm_bus_outcome outcome;
+    } tests[] = {{good, LM_BUS_VALUE},
+                 {with_length(good, 7), LM_BUS_BAD_LENGTH},
+                 {with_length(good, 9), LM_BUS_BAD_LENGTH},
+                 {with_node(good, 0), LM_BUS_BAD_NODE},
+                 {with_extended_id(good, 0x1f40c), LM_BUS_FOREIGN}};
+    for (size_t i = 0; i < sizeof tests / sizeof *tests; i++) {
+        struct lm_bus c;
+        struct lm_bus_event event;
+        lm_bus_init(&c, &lm_bus_xcsoar);
+        assert_int_equal(take(&c, tests[i].frame, &event), tests[i].outcome);
+    }
+}
+
+TEST(services_of_both_ranges_are_told_from_values)
+{
+    static const struct {
+        uint32_t id;
+        enum lm_bus_outcome outcome;
+    } cases[] = {{127, LM_BUS_UNUSED},   {128, LM_BUS_SERVICE}, {199, LM_BUS_SERVICE},
+                 {200, LM_BUS_UNUSED},   {1999, LM_BUS_UNUSED}, {2000, LM_BUS_SERVICE},
+                 {2031, LM_BUS_SERVICE}, {2032, LM_BUS_UNUSED}};
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+        struct lm_bus c;
+        struct lm_bus_event event;
+        lm_bus_init(&c, &lm_bus_canas17);
+        assert_int_equal(take(&c, bus_frame(cases[i].id, 0, 0, 0, 0), &event), cases[i].outcome);
+    }
+}
+
+TEST(no_field_fits_a_type_that_does_not_exist)
+{
+    for (uint32_t field = 0; field < LM_BUS_FIELDS; field++) {
+        assert_false(lm_canas_fits((enum lm_bus_field)field, LM_CANAS_TYPES));
+        assert_false(lm_canas_fits((enum lm_bus_field)field, 255));
     }
 }
 

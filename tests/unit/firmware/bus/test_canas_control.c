@@ -242,6 +242,21 @@ TEST(frames_of_a_wrong_type_length_sender_or_act_are_counted)
     assert_int_equal(c.heard.head, 0);
 }
 
+TEST(a_display_without_a_node_or_a_bus_tells_nothing)
+{
+    struct lm_canas_control c = begin(0, true);
+    const struct lm_control designate = {.kind = LM_CONTROL_DESIGNATE};
+    lm_canas_control_tell(&c, &designate, 0);
+    assert_int_equal(c.count.told, 0);
+    c = begin(NODE, true);
+    lm_canas_control_tell(&c, &designate, 0);
+    const struct lm_can deaf = {.ctx = &wire};
+    lm_canas_control_send(&c, &deaf);
+    assert_int_equal(wire.count, 0);
+    lm_canas_control_send(&c, &can); /* told, when there is a bus */
+    assert_true(wire.count > 0);
+}
+
 TEST(a_set_needs_one_code_one_sender_and_a_second_and_comes_in_any_order)
 {
     struct lm_canas_control from = begin(INSTRUCTOR, false), to = begin(NODE, true);

@@ -164,8 +164,8 @@ TEST(what_is_for_others_or_no_request_is_left_alone)
     const struct lm_can can = port_of(&w);
     ask(&s, 21, LM_CANAS_IDS, 0);
     assert_int_equal(s.count.elsewhere, 1);
-    struct lm_can_frame f[6];
-    for (int i = 0; i < 6; i++) {
+    struct lm_can_frame f[7];
+    for (int i = 0; i < 7; i++) {
         f[i] = request(NODE, LM_CANAS_IDS, 0);
     }
     f[0].is_remote = true;
@@ -174,12 +174,21 @@ TEST(what_is_for_others_or_no_request_is_left_alone)
     f[3].id = 130; /* service channel 1 */
     f[4].length = 3;
     f[5].data[1] = LM_CANAS_FLOAT; /* a request with data */
-    for (int i = 0; i < 6; i++) {
+    f[6].length = 9;               /* more than CAN carries */
+    for (int i = 0; i < 7; i++) {
         lm_canas_service_take(&s, &f[i]);
     }
     lm_canas_service_answer(&s, &can, 0, 0);
     assert_int_equal(w.count, 0);
-    assert_int_equal(s.count.malformed, 2);
+    assert_int_equal(s.count.malformed, 3);
+    struct lm_can_frame with_data = request(NODE, LM_CANAS_STS, 0);
+    with_data.data[1] = LM_CANAS_FLOAT;
+    lm_canas_service_take(&s, &with_data);
+    assert_int_equal(s.count.malformed, 4);
+    const struct lm_can deaf = {.ctx = &w};
+    ask(&s, NODE, LM_CANAS_IDS, 0);
+    lm_canas_service_answer(&s, &deaf, 0, 0); /* a display without a bus */
+    assert_int_equal(w.count, 0);
 
     struct lm_canas_service silent;
     lm_canas_service_init(&silent, 0, 0, 0);

@@ -138,3 +138,15 @@ TEST(a_message_is_torn_by_its_own_beginning_by_a_pause_and_by_a_short_frame)
     last.length = 3;
     assert_non_null(lm_fast_packet_take(&f, &last));
 }
+
+TEST(a_message_is_torn_by_a_clock_that_is_set_back)
+{
+    struct lm_fast_packet f = {0};
+    assert_null(take(&f, part(ID, 0, 20, 0)));
+    struct lm_can_frame early = part(ID, 0, 20, 1);
+    early.time_us--;
+    assert_null(lm_fast_packet_take(&f, &early));
+    assert_int_equal(f.count.torn, 1);
+    assert_null(take(&f, part(ID, 0, 20, 2)));
+    assert_int_equal(f.count.whole, 0);
+}

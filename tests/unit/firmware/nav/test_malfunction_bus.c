@@ -125,3 +125,13 @@ TEST(a_second_sender_is_not_heard_while_the_first_one_is)
     hear(&ear, 30, 1, 10, 3 * S + 1);
     assert_int_equal(ear.broken.now.amount_q8[1], 10 * 256);
 }
+
+TEST(only_channel_0_is_heard)
+{
+    struct ear ear = open_ear();
+    struct lm_can_frame f = bus_frame(1825 + 65536, LM_CANAS_FLOAT, 0, bus_float_bits(10), 0);
+    f.is_extended = true;
+    f.data[2] = 1;
+    hear_frame(&ear, &f);
+    assert_int_equal(set_at(&ear, 0), 0);
+}
