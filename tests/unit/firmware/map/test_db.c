@@ -216,6 +216,109 @@ TEST(an_entry_leads_to_a_whole_record_and_to_detail_inside_its_section)
     }
 }
 
+/* ---- optional sections, whose heads are judged one word at a time ---- */
+
+/* What opening says of an image with this section, its last word the CRC of those before it. */
+static int open_with(uint32_t type, const void *head, uint32_t bytes)
+{
+    uint8_t section[4096] = {0};
+    struct tiny_image image;
+    struct lm_db db;
+    memcpy(section, head, bytes);
+    const uint32_t crc = fx_crc32c(0, section, bytes - 4);
+    memcpy(section + bytes - 4, &crc, 4);
+    build(&image);
+    assert_int_equal(tiny_image_add_section(&image, type, section, bytes), 0);
+    const int status = open_bytes(&db, image.bytes, image.size);
+    tiny_image_free(&image);
+    return status;
+}
+
+TEST(a_head_of_targets_must_agree_with_its_section)
+{
+    const struct lm_targets_head sound = {.count = 0, .record_bytes = LM_TARGET_BYTES};
+    struct lm_targets_head h = sound;
+    assert_int_equal(open_with(LM_IMAGE_TARGETS, &h, sizeof h), LM_OK);
+    assert_int_equal(open_with(LM_IMAGE_TARGETS, &h, sizeof h - 4), LM_ERR_CORRUPT);
+    h.count = 1; /* one record, and no room for it */
+    assert_int_equal(open_with(LM_IMAGE_TARGETS, &h, sizeof h), LM_ERR_CORRUPT);
+    h.count = LM_DB_TARGETS_MAX + 1;
+    assert_int_equal(open_with(LM_IMAGE_TARGETS, &h, sizeof h), LM_ERR_CORRUPT);
+    h = sound, h.record_bytes--;
+    assert_int_equal(open_with(LM_IMAGE_TARGETS, &h, sizeof h), LM_ERR_CORRUPT);
+}
+
+TEST(a_head_of_signatures_must_agree_with_its_section)
+{
+    const struct lm_signatures_head sound = {.record_bytes = LM_SIGNATURE_BYTES,
+                                             .chip_bytes = LM_CHIP_BYTES};
+    struct lm_signatures_head h = sound;
+    assert_int_equal(open_with(LM_IMAGE_SIGNATURES, &h, sizeof h), LM_OK);
+    h.record_bytes++;
+    assert_int_equal(open_with(LM_IMAGE_SIGNATURES, &h, sizeof h), LM_ERR_CORRUPT);
+    h = sound, h.chip_bytes++;
+    assert_int_equal(open_with(LM_IMAGE_SIGNATURES, &h, sizeof h), LM_ERR_CORRUPT);
+    h = sound, h.count = LM_DB_SIGNATURES_MAX + 1;
+    assert_int_equal(open_with(LM_IMAGE_SIGNATURES, &h, sizeof h), LM_ERR_CORRUPT);
+    h = sound, h.chip_count = LM_DB_CHIPS_MAX + 1;
+    assert_int_equal(open_with(LM_IMAGE_SIGNATURES, &h, sizeof h), LM_ERR_CORRUPT);
+    h = sound, h.count = 1;
+    assert_int_equal(open_with(LM_IMAGE_SIGNATURES, &h, sizeof h), LM_ERR_CORRUPT);
+    h = sound, h.chip_count = 1;
+    assert_int_equal(open_with(LM_IMAGE_SIGNATURES, &h, sizeof h), LM_ERR_CORRUPT);
+}
+
+TEST(a_section_that_leaves_the_image_or_its_grid_is_refused)
+{
+    static const uint32_t types[] = {LM_IMAGE_TARGETS, LM_IMAGE_SIGNATURES, LM_IMAGE_GEOID,
+                                     LM_IMAGE_DETAIL,  LM_IMAGE_RADAR,      LM_IMAGE_BUS};
+    const uint8_t content[64] = {0};
+    for (size_t i = 0; i < sizeof types / sizeof *types; i++) {
+        for (int what = 0; what < 5; what++) {
+            struct tiny_image image;
+            struct lm_db db;
+            build(&image);
+            assert_int_equal(tiny_image_add_section(&image, types[i], content, sizeof content), 0);
+            struct lm_image_header h;
+            memcpy(&h, image.bytes, sizeof h);
+            struct lm_image_section *s = &h.sections[h.section_count - 1];
+            assert_int_equal(s->type, types[i]);
+            s->offset += what == 0 ? h.image_bytes : what == 1 ? 1 : 0;
+            s->bytes += what == 2 ? h.image_bytes : what == 3 ? (uint64_t)1 << 40 : 0;
+            s->bytes = what == 4 ? 0 : s->bytes;
+            h.crc = fx_crc32c(0, &h, sizeof h - sizeof h.crc);
+            memcpy(image.bytes, &h, sizeof h);
+            const bool may_be_empty = what == 4 && types[i] == LM_IMAGE_DETAIL;
+            assert_int_equal(open_bytes(&db, image.bytes, image.size),
+                             may_be_empty ? LM_OK : LM_ERR_CORRUPT);
+            tiny_image_free(&image);
+        }
+    }
+}
+
+TEST(a_class_of_an_unknown_kind_or_facing_or_heights_that_fall_are_refused)
+{
+    for (int what = 0; what < 5; what++) {
+        struct tiny_image image;
+        struct lm_db db;
+        build(&image);
+        struct lm_classes *c = (struct lm_classes *)(void *)(image.bytes + image.classes_offset);
+        if (what == 1) {
+            c->entry[7].kind = LM_KIND_TREES + 1;
+        } else if (what == 2) {
+            c->entry[15].facing = LM_FACINGS + 1;
+        } else if (what == 3) {
+            c->height_dm[15] = (uint16_t)(c->height_dm[14] - 1);
+        } else if (what == 4) {
+            c->height_dm[0] = 1;
+        }
+        tiny_image_seal(&image);
+        assert_int_equal(open_bytes(&db, image.bytes, image.size),
+                         what == 0 ? LM_OK : LM_ERR_CORRUPT);
+        tiny_image_free(&image);
+    }
+}
+
 TEST(failing_and_hanging_flash_is_an_io_error)
 {
     struct tiny_image image;
