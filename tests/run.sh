@@ -2,6 +2,7 @@
 # Run every test program given, in TAP form, and add up. Usage: run.sh BUILD-DIR TEST...
 # A test program prints "ok N - name", "not ok N - name", or "ok N # SKIP name" (cmocka says "not ok" there too).
 # A program that dies, or prints no result at all, counts as one failure.
+# Programs that clang made to count what they run leave that in BUILD-DIR/profiles (make coverage).
 # Tests in emulated machines (panel-vm, zcu102) run beside the others, one after the other as those; their results are
 # printed at the end.
 set -u
@@ -13,7 +14,7 @@ mkdir -p "$logs"
 run_test() { # PROGRAM
     name=${1#"$o"/bin/}
     log=$logs/$(echo "$name" | tr / -).tap
-    CMOCKA_MESSAGE_OUTPUT=TAP BUILD=$o timeout -k 5 "${TEST_TIMEOUT:-900}" "$1" >"$log" 2>&1 </dev/null
+    CMOCKA_MESSAGE_OUTPUT=TAP BUILD=$o LLVM_PROFILE_FILE=$o/profiles/$(basename "$log" .tap)-%2m.profraw timeout -k 5 "${TEST_TIMEOUT:-900}" "$1" >"$log" 2>&1 </dev/null
     status=$?
     s=$(grep -cE '^(not )?ok .*# SKIP' "$log")
     p=$(grep -E '^ok ' "$log" | grep -vc '# SKIP')
