@@ -41,7 +41,7 @@ static void ask_ports(const struct lm_board *b, uint32_t call)
         (void)b->can->send(b->can->ctx, &frame);
     }
     if (b->controls->next(b->controls->ctx, &control) == 1) {
-        FUZZ_ASSERT(control.kind < LM_CONTROL_KINDS);
+        FUZZ_ASSERT((uint32_t)control.kind < LM_CONTROL_KINDS);
     }
     if (b->display->acquire(b->display->ctx, &surface) == LM_OK) {
         FUZZ_ASSERT(surface.width_px <= 1024 && surface.height_px <= 1024);

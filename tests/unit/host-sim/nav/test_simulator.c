@@ -399,7 +399,7 @@ TEST(positions_are_those_of_their_instant_however_late_datagrams_come)
     geod_init(&earth, 6378137, 1 / 298.257223563);
     fly(&r, 0, 10);
     for (int i = 0; i + 1 < r.count; i++) {
-        int32_t latitude, longitude;
+        int32_t latitude, longitude = 0;
         double off_m;
         if (r.frame[i].id != 1036 || r.frame[i].time_us < begin_us + 500000) {
             continue;
