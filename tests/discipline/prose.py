@@ -34,7 +34,7 @@ def blocks(text):
     is_code, start, words = False, 0, []
     for number, line in enumerate(text.splitlines() + [""], 1):
         fence = line.lstrip().startswith("```")
-        is_prose = not (is_code or fence or line.startswith(("    ", "|", "#", "![")))
+        is_prose = not (is_code or fence or line.startswith(("    ", "|", "#", "![", "[![")))
         begins = re.match(r"\s*([-*]|\d+\.)\s", line)
         if words and (not is_prose or not line.strip() or begins):
             yield start, " ".join(words)
@@ -58,7 +58,7 @@ def sentences(text):
 
 def prose(path, text):
     for number, line in enumerate(text.splitlines(), 1):
-        if len(line) > LONGEST_LINE and not line.startswith(("|", "    ", "![")):
+        if len(line) > LONGEST_LINE and not line.startswith(("|", "    ", "![", "[![")):
             yield f"{path}:{number}: a line of {len(line)} characters"
     for number, block in blocks(text):
         for sentence in sentences(block):
