@@ -152,13 +152,6 @@ def the_cursor_moves_and_designate_draws_a_patch(b):
     assert b.ask("landmass.told") == 1
 
 
-def hold_aside(begin, end, b):
-    """Hold the cursor to the left until it is where the antenna can look at: off the track."""
-    begin()
-    b.until("(landmass.unit.value('cursorLatitude') | 0) * 360 / 2 ** 32 > 46.02")
-    end()
-
-
 def pad(b, axes, pressed=()):
     """A gamepad of the test's, as navigator.getGamepads would show it, for two frames of the page."""
     buttons = [n in pressed for n in range(4)]
@@ -187,14 +180,14 @@ def a_gamepad_moves_the_cursor_flies_and_designates(b):
     b.find("by-hand").click()
     b.ask("Object.assign(landmass.bus, {latitude: 45.95, longitude: 11}) && 0")
     b.until("landmass.unit.warnings().length === 0")
-    hold_aside(lambda: pad(b, [-1, 0, 0, 0]), lambda: pad(b, [0, 0, 0, 0]), b)
-    for _ in range(30):  # refused while the navigation or the place is not good
-        pad(b, [0, 0, 0, 0])
-        pad(b, [0, 0, 0, 0], [0])
-        time.sleep(0.5)
-        if value(b, "mode") == 3:
-            break
-    assert value(b, "mode") == 3
+    # To the left of the track, where the antenna can look at, and back from the edge of the country.
+    pad(b, [-1, 0, 0, 0])
+    b.until("(landmass.unit.value('cursorLatitude') | 0) * 360 / 2 ** 32 > 46.02")
+    pad(b, [0, 1, 0, 0])
+    b.until("(landmass.unit.value('cursorLongitude') | 0) * 360 / 2 ** 32 < 11.2")
+    pad(b, [0, 0, 0, 0])
+    pad(b, [0, 0, 0, 0], [0])
+    b.until("landmass.unit.value('mode') === 3")
     pad(b, [0, 0, 0, 0], [0])  # held: one designation
     pad(b, [0, 0, 0, 0], [1])
     b.until("landmass.unit.value('mode') !== 3")
