@@ -178,7 +178,7 @@ test('any bytes are safe: a line that is none is named, a torn end is left out',
     const whole = text.slice(0, text.lastIndexOf('\n') + 1), head = whole.split('\n').findLastIndex((line) => / unit 1F4C4D00#/.test(line));
     const lines = whole.split('\n'), last = lines[head];
     lines[head] = last.slice(0, -1) + (last.endsWith('1') ? '2' : '1'); // of the build's identity
-    assert.equal(end(lines.join('\n') + '(1700000001.000000) unit 1F4C4D11#0200000000\n'), '');
+    assert.equal(end(lines.join('\n') + '(1700000001.000000) unit 1F4C4D11#0201000000\n'), '');
     assert.match(replay.remark(), /recorded by another build.*; the recorder gave up here: lines came faster/);
     assert.match(end(''), /does not begin as a recording/);
     assert.match(end('(1.000000) can0 123#00\n'), /does not begin as a recording/);
