@@ -80,14 +80,14 @@ long ios_feed_take(const struct ios_feed *feed, uint64_t *at, char *to, size_t r
 
 static int by_order(const void *a, const void *b)
 {
-    const struct kept *const *x = a, *const *y = b;
-    return ((*x)->order > (*y)->order) - ((*x)->order < (*y)->order);
+    const struct kept *x = a, *y = b;
+    return (x->order > y->order) - (x->order < y->order);
 }
 
 char *ios_feed_past(const struct ios_feed *feed, size_t *bytes)
 {
     const struct ios_past *past = feed->past;
-    const struct kept **sorted = calloc(past->count + 1, sizeof *sorted);
+    struct kept *sorted = calloc(past->count + 1, sizeof *sorted);
     char *text = malloc((past->count + 1) * IOS_LINE_MAX);
     *bytes = 0;
     if (past->count == 0 || sorted == NULL || text == NULL) {
@@ -98,12 +98,12 @@ char *ios_feed_past(const struct ios_feed *feed, size_t *bytes)
     size_t count = 0;
     for (size_t i = 0; i < sizeof past->kept / sizeof past->kept[0]; i++) {
         if (past->kept[i].order != 0) {
-            sorted[count++] = &past->kept[i];
+            sorted[count++] = past->kept[i];
         }
     }
     qsort(sorted, count, sizeof *sorted, by_order);
     for (size_t i = 0; i < count; i++) {
-        *bytes += ios_line_write(text + *bytes, "past", sorted[i]->time_us, &sorted[i]->frame);
+        *bytes += ios_line_write(text + *bytes, "past", sorted[i].time_us, &sorted[i].frame);
     }
     free(sorted);
     return text;

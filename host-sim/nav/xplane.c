@@ -162,7 +162,7 @@ size_t nav_xplane_ask(int index, bool stop, uint8_t bytes[NAV_TOLD_BYTES])
     if (index > REF_END - REF_PAUSED) {
         return 0;
     }
-    memcpy(bytes, "RREF", 4);
+    strcpy((char *)bytes, "RREF");
     put_word(bytes + HEAD, stop ? 0 : 10);
     put_word(bytes + HEAD + 4, (uint32_t)(REF_PAUSED + index - 1));
     strcpy((char *)bytes + HEAD + 8, refs[index - 1]);

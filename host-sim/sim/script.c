@@ -380,10 +380,10 @@ static bool parse_break(struct nav_exercise *x, char **words, int count, struct 
         return false;
     }
     const double from_s = time_of(line);
-    int length = snprintf(text, sizeof text, "%s@%.2f", words[2], from_s);
+    const int length = snprintf(text, sizeof text, "%s@%.2f", words[2], from_s);
     if (count == 4) {
-        length += snprintf(text + length, sizeof text - (size_t)length, ",%.2f",
-                           from_s + round(for_s * 100) / 100);
+        snprintf(text + length, sizeof text - (size_t)length, ",%.2f",
+                 from_s + round(for_s * 100) / 100);
     }
     const char *const cause = nav_exercise_add_malfunction(x, text);
     if (cause) {
