@@ -18,6 +18,7 @@ const desk = {
     base: null,       // {us, ms}: time of flight and of the clock since when it plays
     goal: null,       // {isReached, begunMs}: what a jump steps towards
     paintedMs: 0, toldMs: 0, backMs: 0,
+    isEvery: false,   // each picture of one that grows is sent, also while catching up
     lastPicture: -1,  // number of the picture that the page has
 };
 
@@ -174,7 +175,7 @@ function followOn(endMs) {
             return true;
         }
         replay.step();
-        if (replay.hasNewPicture() && (feed.isEvery || performance.now() - desk.paintedMs > PICTURE_MS)) {
+        if (replay.hasNewPicture() && (desk.isEvery || performance.now() - desk.paintedMs > PICTURE_MS)) {
             sendPicture();
         }
     }
@@ -248,7 +249,7 @@ const asks = {
         desk.speed = 0;
         jumpToPicture(Math.max((desk.lastPicture === -1 ? 0 : desk.lastPicture) + by, 1));
     },
-    every: ({isEvery}) => { desk.feed.isEvery = isEvery; },
+    every: ({isEvery}) => { desk.isEvery = isEvery; },
 };
 
 onmessage = async ({data}) => {

@@ -8,7 +8,7 @@ import {httpSource} from './web/flash.mjs';
 import {Player} from './web/player.mjs';
 import {Unit} from './web/unit.mjs';
 
-const SILENT_MS = 1000, LATE_US = 700000, CHECK_MS = 200, AGAIN_MS = 2000;
+const SILENT_MS = 1000, LATE_US = 700000, CHECK_MS = 200, AGAIN_MS = 2000, NEXT_MS = 15000;
 const SIDE = 768, STEP_US = 4000, BEHIND_MOST_US = 100000;
 
 const find = (id) => document.getElementById(id);
@@ -93,7 +93,7 @@ class Repeater {
         find('words').textContent = [state.words, state.remark].filter(Boolean).join('; ');
         this.judge();
         if (state.isOver && !this.again) {
-            this.later(); // the display may have begun another recording
+            this.later(NEXT_MS); // the display may have begun another recording
         }
     }
 
@@ -112,9 +112,9 @@ class Repeater {
         this.later();
     }
 
-    later() {
+    later(ms = AGAIN_MS) {
         clearTimeout(this.again);
-        this.again = setTimeout(() => this.choose(this.display.name), AGAIN_MS);
+        this.again = setTimeout(() => this.choose(this.display.name), ms);
     }
 
     pictured(picture) {
