@@ -72,6 +72,8 @@ class Page:
         return self.b.driver.execute_script(words)
 
     def click(self, name):
+        """The page is drawn five times a second, and its buttons with it."""
+        self.b.until(f"!document.getElementById('{name}').matches(':disabled')")
         self.b.find(name).click()
 
     def tab(self, name):
