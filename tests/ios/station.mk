@@ -14,7 +14,7 @@ STATION_TESTS := $(addprefix $(O)/bin/tests/ios/,test_station test_station_page)
 TESTS += $(STATION_TESTS)
 $(O)/bin/tests/ios/test_station: STATION_RUN := node --test-reporter=tap tests/ios/test_station.mjs
 $(O)/bin/tests/ios/test_station_page: STATION_RUN := /usr/bin/python3 -B tests/ios/test_station_page.py
-$(STATION_TESTS): $(addprefix $(O)/bin/landmass-,bus nav sim) $(O)/bin/tests/zcu102/golden_flash \
+$(STATION_TESTS): $(addprefix $(O)/bin/landmass-,bus ios nav sim) $(O)/bin/tests/zcu102/golden_flash \
     $(IOS_SITE)/.made tests/ios/station.mk
 	@mkdir -p $(@D)
 	@printf '#!/bin/sh\nexec sh tests/web/run.sh %s\n' '$(STATION_RUN)' >$@

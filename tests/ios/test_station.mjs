@@ -292,6 +292,18 @@ test('a page that goes away leaves its exercise to another, before the displays 
     b.isThere = c.isThere = false;
 });
 
+test('what a page has just removed is no orphan, however long its removal takes to come back', () => {
+    let now = 0;
+    const keeper = new Keeper({send: () => {}, nowMs: () => now, node: 31, random: () => 0});
+    const things = [{key: 'malfunction 3', timeUs: 0, node: 31}];
+    keeper.keep('malfunction 3', () => F.malfunctionFrames(3, 1));
+    now = 5000;
+    keeper.remove(['malfunction 3'], F.clearMalfunctionFrames(3));
+    assert.deepEqual(keeper.orphans(things, 5e6), []);
+    now = 9000; // it was lost: the displays still have the thing
+    assert.equal(keeper.orphans(things, 9e6).length, 1);
+});
+
 test('what nobody tells any more ends after ten seconds, as on the displays', () => {
     const bus = new Bus(), a = bus.page(0.2);
     a.commands.placeTarget(CAR);

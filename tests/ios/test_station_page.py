@@ -20,25 +20,12 @@ except ImportError:
 
 BUILD = pathlib.Path(os.environ.get("BUILD", "build/bench-linux"))
 TMP = BUILD / "tmp/ios"
-SITE = TMP / "site"
-IOS = os.environ.get("IOS")  # landmass-ios in place of the bus of the tests; it has no navigation then
-OUT = TMP / "bus.log"
 NORTH = (46.12, 11.0)       # ahead of the aircraft, a third of the way up the glass
 FARTHER = (46.3, 11.0)
 SIDE = (46.05, 11.15)        # where a patch can be taken
 BOUNDS = {"title": "golden", "west": 10.5, "south": 45.6, "east": 11.5, "north": 46.4, "zoom_max": 12}
 FLAG_MALFUNCTION, SWITCH_FROZEN = 1 << 14, 1
 LOST_SECTOR = (5, 6)
-
-
-def make_site():
-    shutil.rmtree(TMP / "site", ignore_errors=True)
-    shutil.copytree(BUILD / "ios", SITE)
-    web.make_scene(TMP)
-    display = {"name": "left", "node": 20, "recording": "left"}
-    (SITE / "station.json").write_text(json.dumps({"bus": "loop", "may_send": True, "displays": [display]}))
-    (SITE / "map.json").write_text(json.dumps(BOUNDS))
-    OUT.write_text("")
 
 
 class Page:
@@ -54,7 +41,7 @@ class Page:
 
     def start(self):
         self.b.get()
-        self.b.until(f"globalThis.station?.isOpen && {'true' if IOS else 'station.world.ownAircraft()'}")
+        self.b.until("globalThis.station?.isOpen && station.world.ownAircraft()")
         self.js(f"Object.assign(station.map.bounds, {json.dumps(BOUNDS)}, {{zoom_max: station.map.bounds.zoom_max}})")
         self.js("station.map.wholeMap(); station.map.isFollowing = false; station.ownLines = [];"
                 "const {link} = station, take = link.take.bind(link), isOwn = (line) => line.includes('#1F');"
@@ -483,12 +470,11 @@ def two_instructors_agree(p, _):
 
 def stale_navigation_and_a_lost_connection_are_plain(p, _):
     server = p.server
-    if not IOS:
-        server.child.send_signal(signal.SIGUSR1)
-        p.b.until("document.getElementById('own').textContent.includes('STALE')")
-        p.b.until("document.getElementById('own').textContent.includes('LOST')")
-        server.child.send_signal(signal.SIGUSR1)
-        p.b.until("document.getElementById('own').textContent.startsWith('Own aircraft,')")
+    server.child.send_signal(signal.SIGSTOP)  # the connection stays, and nothing comes
+    p.b.until("document.getElementById('own').textContent.includes('STALE')")
+    p.b.until("document.getElementById('own').textContent.includes('LOST')")
+    server.child.send_signal(signal.SIGCONT)
+    p.b.until("document.getElementById('own').textContent.startsWith('Own aircraft,')")
     server.stop()
     p.b.until("document.getElementById('lost').textContent.includes('Connection lost')")
     assert p.b.find("freeze").is_enabled() is False and p.b.find("connection").text == "NO CONNECTION"
@@ -627,20 +613,17 @@ TESTS = [a_target_is_placed_and_stands_on_the_glass, a_target_that_is_dragged_mo
 
 
 class Server:
-    """The bus and the site; it comes back at the same port."""
+    """landmass-ios with a flight on its bus; it comes back at the same port."""
 
     def __init__(self, log):
         self.log, self.port = log, 0
         self.start()
 
     def start(self):
-        """That of the tests; or landmass-ios, where IOS names the program."""
-        if IOS:
-            words = [IOS, "--image", TMP / "scene.lmdb", "--site", BUILD / "ios", "--port", self.port]
-            self.child = subprocess.Popen([*map(str, words)], stderr=subprocess.PIPE, text=True)
-            self.url = next(word for word in self.child.stderr.readline().split() if word.startswith("http"))
-        else:
-            self.child, self.url = web.node(ROOT / "tests/ios/loop.mjs", SITE, self.log, OUT, self.port)
+        words = [BUILD / "bin/landmass-ios", "--image", TMP / "scene.lmdb", "--site", BUILD / "ios", "--port", self.port,
+                 "--log", self.log, "--display", f"left:20={TMP}"]
+        self.child = subprocess.Popen([*map(str, words)], stderr=subprocess.PIPE, text=True)
+        self.url = next(word for word in self.child.stderr.readline().split() if word.startswith("http"))
         self.port = self.url.split(":")[2].strip("/")
 
     def stop(self):
@@ -655,7 +638,7 @@ def main():
         print(f"ok 1 # SKIP the instructor's page in a browser\n# skipped: {lacks} is missing: run make deps\n1..1")
         return 0
     TMP.mkdir(parents=True, exist_ok=True)
-    make_site()
+    web.make_scene(TMP)
     glass = Glass(BUILD / "bin", TMP / "scene.lmdb", TMP / "glass")
     glass.run("landmass-nav", "--straight", "45.7,11,0,3000,60", "--seconds", 600, "--out", TMP / "nav.log", "--quiet")
     server = Server(TMP / "nav.log")

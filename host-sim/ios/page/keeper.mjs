@@ -7,7 +7,8 @@
 import {ALL, linesOf} from './frames.mjs';
 import {subjectOf} from './world.mjs';
 
-const REPEAT_MS = 1000, ECHO_MS = 5000, CLASH_MS = 300, SAME_SET_MS = 20, TAKE_OVER_US = 1.8e6, TAKE_OVER_MORE_US = 1e6;
+const REPEAT_MS = 1000, ECHO_MS = 5000, CLASH_MS = 300, SAME_SET_MS = 20, TAKE_OVER_US = 1.8e6, TAKE_OVER_MORE_US = 1e6,
+    REMOVED_MS = 3000;
 
 /* A thing that is kept. Malfunctions have a sender in common, but are kept one by one. */
 export function keyOf(fact) {
@@ -149,10 +150,12 @@ export class Keeper {
         this.sent.forEach((ms, key) => now - ms > ECHO_MS && this.sent.delete(key));
     }
 
-    /* Which of these things, {key, timeUs, node}, has nobody told for so long that this page has to. */
+    /* Which of these things, {key, timeUs, node}, has nobody told for so long that this page has to. None that this
+     * page has just removed: until the removal has come back, it still seems to be there. */
     orphans(things, nowUs) {
+        const isRemoved = (key) => this.nowMs() - (this.removed.get(key)?.ms ?? -Infinity) < REMOVED_MS;
         return things.filter(({key, timeUs, node}) => {
-            if (node !== this.node || this.kept.has(key)) {
+            if (node !== this.node || this.kept.has(key) || isRemoved(key)) {
                 return false;
             }
             this.patience ??= this.random(); // pages differ, so that one is the first
