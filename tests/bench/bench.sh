@@ -111,6 +111,11 @@ if [ -x "$build/bin/landmass-dis" ]; then
     echo
 fi
 
+if [ -x "$build/bin/landmass-ios" ] && [ -r build/run/scene.lmdb ]; then
+    python3 -B "$here/ios.py" "$build/bin/landmass-ios" build/run/scene.lmdb
+    echo
+fi
+
 if [ -r "$here/classifier.sh" ]; then
     echo
     sh "$here/classifier.sh" "$build"
