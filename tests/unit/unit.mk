@@ -121,7 +121,7 @@ $(eval $(call unit_script,host-sim/programs/json/test_json.py))
 $(eval $(call unit_script,host-sim/programs/nav/test_nav_live.py))
 $(eval $(call unit_script,host-sim/programs/progress/test_progress.py))
 $(UNIT)/bsp/panel-linux/test_package: $(PANEL) $(wildcard bsp/panel-linux/debian/*)
-$(UNIT)/host-sim/package/test_package: $(PROGRAMS) $(wildcard host-sim/package/*)
+$(UNIT)/host-sim/package/test_package: $(PROGRAMS) $(O)/ios/.made $(wildcard host-sim/package/*)
 $(UNIT)/host-sim/programs/dis/test_dis: | $(O)/bin/landmass-dis
 $(UNIT)/host-sim/programs/nav/test_nav_live: | $(O)/bin/landmass-nav
 $(UNIT)/host-sim/programs/json/test_json $(UNIT)/host-sim/programs/progress/test_progress: | $(HOST_TOOLS)
