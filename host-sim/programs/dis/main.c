@@ -4,13 +4,13 @@
 #include "hs/error.h"
 #include "hs/input_file.h"
 #include "hs/progress.h"
+#include "hs/real_time.h"
 #include "hs/report.h"
 #include "hs/udp.h"
 #include "image/reader.h"
 #include "output.h"
 
 #include <errno.h>
-#include <signal.h>
 #include <stdlib.h>
 #include <string.h>
 #include <time.h>
@@ -33,27 +33,12 @@ struct run {
     uint8_t bytes[DIS_DATAGRAM_MAX];
 };
 
-static volatile sig_atomic_t is_interrupted;
-
-static void interrupt(int number)
-{
-    (void)number;
-    is_interrupted = 1;
-}
-
-static int64_t clock_us(clockid_t clock)
-{
-    struct timespec t;
-    clock_gettime(clock, &t);
-    return (int64_t)t.tv_sec * 1000000 + t.tv_nsec / 1000;
-}
-
 /* ---- time ---- */
 
 static bool is_over(const struct run *r, int64_t now_us)
 {
-    return is_interrupted || (r->command.seconds > 0 && r->has_begun &&
-                              (double)(now_us - r->first_us) * 1e-6 >= r->command.seconds);
+    return hs_is_interrupted() || (r->command.seconds > 0 && r->has_begun &&
+                                   (double)(now_us - r->first_us) * 1e-6 >= r->command.seconds);
 }
 
 static void begin(struct run *r, int64_t now_us)
@@ -61,7 +46,7 @@ static void begin(struct run *r, int64_t now_us)
     if (!r->has_begun) {
         r->has_begun = true;
         r->first_us = r->now_us = now_us;
-        r->paced_from_us = clock_us(CLOCK_MONOTONIC);
+        r->paced_from_us = hs_clock_us(CLOCK_MONOTONIC);
     }
 }
 
@@ -86,7 +71,7 @@ static void wait_until(const struct run *r, int64_t now_us)
 {
     const int64_t until_us = r->paced_from_us + (now_us - r->first_us);
     const struct timespec t = {until_us / 1000000, until_us % 1000000 * 1000};
-    while (r->command.can != NULL && !is_interrupted &&
+    while (r->command.can != NULL && !hs_is_interrupted() &&
            clock_nanosleep(CLOCK_MONOTONIC, TIMER_ABSTIME, &t, NULL) == EINTR) {
     }
 }
@@ -178,10 +163,10 @@ static int run_port(struct run *r)
     if (hs_udp_open(&receiver, r->command.listen_port, r->command.bind, r->command.group) != 0) {
         return -1;
     }
-    const int64_t ahead_us = clock_us(CLOCK_REALTIME) - clock_us(CLOCK_MONOTONIC);
-    begin(r, clock_us(CLOCK_MONOTONIC) + ahead_us);
+    const int64_t ahead_us = hs_clock_us(CLOCK_REALTIME) - hs_clock_us(CLOCK_MONOTONIC);
+    begin(r, hs_clock_us(CLOCK_MONOTONIC) + ahead_us);
     int status = 0;
-    while (status >= 0 && !is_over(r, clock_us(CLOCK_MONOTONIC) + ahead_us)) {
+    while (status >= 0 && !is_over(r, hs_clock_us(CLOCK_MONOTONIC) + ahead_us)) {
         size_t length;
         for (int i = 0; i < BATCH; i++) {
             status = hs_udp_next(&receiver, i == 0 ? STEP_US / 1000 : 0, r->bytes, sizeof r->bytes,
@@ -189,9 +174,9 @@ static int run_port(struct run *r)
             if (status != 1) {
                 break;
             }
-            take(r, r->bytes, length, clock_us(CLOCK_MONOTONIC) + ahead_us);
+            take(r, r->bytes, length, hs_clock_us(CLOCK_MONOTONIC) + ahead_us);
         }
-        step(r, clock_us(CLOCK_MONOTONIC) + ahead_us);
+        step(r, hs_clock_us(CLOCK_MONOTONIC) + ahead_us);
     }
     r->lost = receiver.lost;
     hs_udp_close(&receiver);
@@ -439,8 +424,7 @@ int main(int argc, char **argv)
     hs_set_program("landmass-dis");
     static struct run r;
     int exit_code;
-    signal(SIGINT, interrupt);
-    signal(SIGTERM, interrupt);
+    hs_catch_interrupts();
     if (dis_options_read(&r.command, argc, argv, &exit_code)) {
         exit_code = r.command.prints_kinds ? print_kinds()
                     : run(&r) == 0         ? HS_EXIT_OK

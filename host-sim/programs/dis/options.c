@@ -1,6 +1,7 @@
 #include "options.h"
 
 #include "hs/error.h"
+#include "hs/network_options.h"
 #include "hs/number.h"
 
 #include <arpa/inet.h>
@@ -65,29 +66,10 @@ static const char *take_targets(void *context, const char *text)
     return NULL;
 }
 
-static const char *take_interface(void *context, const char *text)
-{
-    const char **name = context;
-    const size_t length = strlen(text);
-    if (length < 1 || length > 15 || strpbrk(text, " \t\n/")) {
-        return "needs a name of 1 to 15 characters without blanks";
-    }
-    *name = text;
-    return NULL;
-}
-
-static const char *take_address(void *context, const char *text)
-{
-    const char **address = context;
-    struct in_addr parsed;
-    *address = text;
-    return inet_pton(AF_INET, text, &parsed) == 1 ? NULL : "needs an IPv4 address";
-}
-
 static const char *take_group(void *context, const char *text)
 {
     struct in_addr parsed;
-    const char *cause = take_address(context, text);
+    const char *cause = hs_take_address(context, text);
     if (cause == NULL && inet_pton(AF_INET, text, &parsed) == 1 &&
         IN_MULTICAST(ntohl(parsed.s_addr))) {
         return NULL;
@@ -231,9 +213,9 @@ bool dis_options_read(struct command *c, int argc, char **argv, int *exit_code)
                       .ownship = {take_ownship, s},
                       .centre = {take_centre, s},
                       .targets = {take_targets, s},
-                      .interface = {take_interface, &c->interface},
-                      .can = {take_interface, &c->can},
-                      .bind = {take_address, &c->bind},
+                      .interface = {hs_take_interface, &c->interface},
+                      .can = {hs_take_interface, &c->can},
+                      .bind = {hs_take_address, &c->bind},
                       .group = {take_group, &c->group},
                       .load_percent = s->load * 100,
                       .bitrate_kbit_s = s->bits_per_s / 1000,

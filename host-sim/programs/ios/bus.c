@@ -2,19 +2,12 @@
 
 #include "hs/error.h"
 #include "hs/input_file.h"
+#include "hs/real_time.h"
 
 #include <errno.h>
 #include <string.h>
-#include <time.h>
 
 enum { HEARD_A_STEP = 4096, KERNEL_WAITS = 8 };
-
-static uint64_t clock_us(clockid_t clock)
-{
-    struct timespec t;
-    clock_gettime(clock, &t);
-    return (uint64_t)t.tv_sec * 1000000 + (uint64_t)t.tv_nsec / 1000;
-}
 
 static int open_socket(struct bus *b)
 {
@@ -51,7 +44,7 @@ int bus_open(struct bus *b, const struct command *c)
     b->command = c;
     b->name = "loop";
     b->socket.fd = -1;
-    b->begun_us = clock_us(CLOCK_MONOTONIC);
+    b->begun_us = hs_clock_us(CLOCK_MONOTONIC);
     if (ios_feed_open(&b->feed, IOS_FEED_BYTES) != 0 || (c->can != NULL && open_socket(b) != 0) ||
         (c->log_path != NULL && open_log(b) != 0)) {
         return -1;
@@ -63,7 +56,7 @@ int bus_open(struct bus *b, const struct command *c)
 /* All that goes over the bus passes here. */
 static void carry(struct bus *b, const struct lm_can_frame *frame)
 {
-    const uint64_t now_us = clock_us(CLOCK_REALTIME);
+    const uint64_t now_us = (uint64_t)hs_clock_us(CLOCK_REALTIME);
     ios_feed_put(&b->feed, b->name, now_us, frame);
     if (b->has_out && !frame->is_error && !frame->is_remote) {
         (void)drv_can_log_write(b->out.stream, b->name, now_us, frame); /* told by the commit */
@@ -103,7 +96,7 @@ void bus_step(struct bus *b)
         hear(b, drv_can_socket_port(&b->socket));
         send_waiting(b);
     } else if (b->log_file != NULL) {
-        drv_can_log_set_now(&b->log, clock_us(CLOCK_MONOTONIC) - b->begun_us);
+        drv_can_log_set_now(&b->log, (uint64_t)(hs_clock_us(CLOCK_MONOTONIC) - b->begun_us));
         hear(b, drv_can_log_port(&b->log));
     }
 }

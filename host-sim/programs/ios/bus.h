@@ -20,7 +20,7 @@ struct bus {
     struct drv_can_log log;
     struct hs_atomic_file out;
     bool has_out;
-    uint64_t begun_us; /* CLOCK_MONOTONIC */
+    int64_t begun_us; /* CLOCK_MONOTONIC */
     struct lm_can_frame queue[BUS_QUEUE];
     uint32_t head, tail; /* put at head % BUS_QUEUE, taken at tail % BUS_QUEUE */
     struct {

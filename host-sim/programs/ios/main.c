@@ -1,26 +1,11 @@
 /* landmass-ios: the instructor's station. */
 #include "hs/error.h"
+#include "hs/real_time.h"
 #include "hs/report.h"
 #include "server.h"
 
 #include <signal.h>
 #include <stdio.h>
-#include <time.h>
-
-static volatile sig_atomic_t is_interrupted;
-
-static void interrupt(int number)
-{
-    (void)number;
-    is_interrupted = 1;
-}
-
-static double clock_s(void)
-{
-    struct timespec t;
-    clock_gettime(CLOCK_MONOTONIC, &t);
-    return (double)t.tv_sec + (double)t.tv_nsec * 1e-9;
-}
 
 static void report(const struct server *s)
 {
@@ -56,12 +41,13 @@ static void print_summary(const struct server *s)
 
 static int serve(struct server *s, const struct command *c)
 {
-    const double until_s = clock_s() + c->seconds;
+    const double until_s = (double)hs_clock_us(CLOCK_MONOTONIC) * 1e-6 + c->seconds;
     if (!c->is_quiet) {
         fprintf(stderr, "http://%s:%d/\n", c->bind, server_port(s));
     }
-    while (!is_interrupted && (c->seconds <= 0 || clock_s() < until_s)) {
-        if (!server_step(s) && !is_interrupted) {
+    while (!hs_is_interrupted() &&
+           (c->seconds <= 0 || (double)hs_clock_us(CLOCK_MONOTONIC) * 1e-6 < until_s)) {
+        if (!server_step(s) && !hs_is_interrupted()) {
             return hs_error("server", NULL, "cannot go on");
         }
     }
@@ -100,8 +86,7 @@ int main(int argc, char **argv)
     hs_set_program("landmass-ios");
     struct command c;
     int exit_code;
-    signal(SIGINT, interrupt);
-    signal(SIGTERM, interrupt);
+    hs_catch_interrupts();
     signal(SIGPIPE, SIG_IGN);
     if (ios_options_read(&c, argc, argv, &exit_code)) {
         exit_code = run(&c) == 0 ? HS_EXIT_OK : HS_EXIT_FAILED;

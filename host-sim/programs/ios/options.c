@@ -1,8 +1,8 @@
 #include "options.h"
 
 #include "hs/error.h"
+#include "hs/network_options.h"
 
-#include <arpa/inet.h>
 #include <limits.h>
 #include <stdlib.h>
 #include <string.h>
@@ -18,25 +18,6 @@ static const struct hs_usage usage = {
     "\n"
     "It listens at 127.0.0.1, so that nobody beyond this machine reaches it. Elsewhere it needs a "
     "token, and should have a proxy with TLS before it: docs/ios.md."};
-
-static const char *take_can(void *context, const char *text)
-{
-    const char **name = context;
-    const size_t length = strlen(text);
-    if (length < 1 || length > 15 || strpbrk(text, " \t\n/")) {
-        return "needs a name of 1 to 15 characters without blanks";
-    }
-    *name = text;
-    return NULL;
-}
-
-static const char *take_address(void *context, const char *text)
-{
-    const char **address = context;
-    struct in_addr parsed;
-    *address = text;
-    return inet_pton(AF_INET, text, &parsed) == 1 ? NULL : "needs an IPv4 address";
-}
 
 /* NAME[:NODE]=FOLDER */
 static const char *take_display(void *context, const char *text)
@@ -75,7 +56,7 @@ static const char *take_display(void *context, const char *text)
 
 static bool read_table(struct command *c, int argc, char **argv, int *exit_code)
 {
-    const struct hs_taker can = {take_can, &c->can}, bind = {take_address, &c->bind},
+    const struct hs_taker can = {hs_take_interface, &c->can}, bind = {hs_take_address, &c->bind},
                           display = {take_display, c};
     const struct hs_option options[] = {
         {"The bus", HS_HEADING, NULL, 0, 0, NULL,

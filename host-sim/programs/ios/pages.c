@@ -1,10 +1,11 @@
 /* Sockets of pages: the bus both ways, and recordings as they grow. */
 #include "server.h"
 
+#include "hs/real_time.h"
+
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <time.h>
 
 enum { CHUNK = 32768 };
 
@@ -41,13 +42,6 @@ static int write_text(struct lws *wsi, char *buffer, size_t length)
 
 /* ---- the bus ---- */
 
-static uint64_t now_us(clockid_t clock)
-{
-    struct timespec t;
-    clock_gettime(clock, &t);
-    return (uint64_t)t.tv_sec * 1000000 + (uint64_t)t.tv_nsec / 1000;
-}
-
 static int open_page(struct server *s, struct lws *wsi, struct page *p)
 {
     struct ios_route route;
@@ -59,7 +53,7 @@ static int open_page(struct server *s, struct lws *wsi, struct page *p)
     p->at = s->bus->feed.end;
     p->past = ios_feed_past(&s->bus->feed, &p->past_bytes);
     p->allowance = PAGE_FRAMES_A_S;
-    p->allowed_us = now_us(CLOCK_MONOTONIC);
+    p->allowed_us = hs_clock_us(CLOCK_MONOTONIC);
     p->is_open = true;
     s->page[s->pages++] = wsi;
     s->count.pages++;
@@ -85,7 +79,7 @@ static void close_page(struct server *s, const struct lws *wsi, struct page *p)
 /* A page may save up the frames of one second. */
 static bool may_go(struct page *p)
 {
-    const uint64_t now = now_us(CLOCK_MONOTONIC);
+    const int64_t now = hs_clock_us(CLOCK_MONOTONIC);
     p->allowance += (double)(now - p->allowed_us) * 1e-6 * PAGE_FRAMES_A_S;
     p->allowance = p->allowance < PAGE_FRAMES_A_S ? p->allowance : PAGE_FRAMES_A_S;
     p->allowed_us = now;
@@ -165,7 +159,8 @@ static const struct lm_can_frame end_frame = {.id = 0x7ff};
 static size_t take_past(struct page *p, char *to)
 {
     char end[IOS_LINE_MAX];
-    const size_t end_length = ios_line_write(end, "past", now_us(CLOCK_REALTIME), &end_frame);
+    const size_t end_length =
+        ios_line_write(end, "past", (uint64_t)hs_clock_us(CLOCK_REALTIME), &end_frame);
     size_t length = p->past_bytes - p->past_at;
     if (length > CHUNK - IOS_LINE_MAX) {
         length = CHUNK - IOS_LINE_MAX;
@@ -181,16 +176,8 @@ static size_t take_past(struct page *p, char *to)
         return length;
     }
     memcpy(to + length, end, end_length);
-    p->past_bytes = 0;
-    p->past_at = 1; /* said */
-    free(p->past);
-    p->past = NULL;
+    p->is_past_told = true;
     return length + end_length;
-}
-
-static bool has_past(const struct page *p)
-{
-    return p->past_at < p->past_bytes || (p->past_at == 0 && p->past_bytes == 0);
 }
 
 static int write_page(struct server *s, struct lws *wsi, struct page *p)
@@ -200,7 +187,7 @@ static int write_page(struct server *s, struct lws *wsi, struct page *p)
     if (p->reply[0] != '\0') {
         length = snprintf(buffer + LWS_PRE, CHUNK, "%s", p->reply);
         p->reply[0] = '\0';
-    } else if (has_past(p)) {
+    } else if (!p->is_past_told) {
         length = (long)take_past(p, buffer + LWS_PRE);
     } else {
         length = ios_feed_take(&s->bus->feed, &p->at, buffer + LWS_PRE, CHUNK);
@@ -208,7 +195,7 @@ static int write_page(struct server *s, struct lws *wsi, struct page *p)
     if (length <= 0) { /* less: check_page sees to it */
         return 0;
     }
-    if (p->at != s->bus->feed.end || has_past(p)) {
+    if (p->at != s->bus->feed.end || !p->is_past_told) {
         lws_callback_on_writable(wsi);
     }
     return write_text(wsi, buffer, (size_t)length);

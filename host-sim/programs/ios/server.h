@@ -90,8 +90,8 @@ struct page {
     bool is_long;     /* longer than that */
     char reply[160];  /* "! why a line was refused"; empty: none waits */
     double allowance; /* frames that it may send now */
-    uint64_t allowed_us;
-    bool is_open;
+    int64_t allowed_us;
+    bool is_open, is_past_told;
 };
 
 /* A repeater that follows a recording. */

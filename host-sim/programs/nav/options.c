@@ -1,11 +1,11 @@
 #include "options.h"
 
 #include "hs/error.h"
+#include "hs/network_options.h"
 #include "hs/number.h"
 #include "hs/options.h"
 #include "nav/parse.h"
 
-#include <arpa/inet.h>
 #include <math.h>
 #include <string.h>
 
@@ -88,53 +88,6 @@ static const char *take_malfunction(void *context, const char *text)
     return nav_exercise_add_malfunction(&c->send.exercise, text);
 }
 
-static const char *take_address(const char **to, const char *text)
-{
-    struct in_addr address;
-    if (inet_pton(AF_INET, text, &address) != 1) {
-        return "needs an IPv4 address such as 192.168.1.5";
-    }
-    *to = text;
-    return NULL;
-}
-
-static const char *take_bind(void *context, const char *text)
-{
-    return take_address(&((struct command *)context)->bind, text);
-}
-
-static const char *take_from(void *context, const char *text)
-{
-    return take_address(&((struct command *)context)->from, text);
-}
-
-static const char *take_ask(void *context, const char *text)
-{
-    return take_address(&((struct command *)context)->ask, text);
-}
-
-static bool is_interface(const char *text)
-{
-    const size_t length = strlen(text);
-    return length >= 1 && length <= 15 && !strpbrk(text, " \t\n/");
-}
-
-static const char *take_can(void *context, const char *text)
-{
-    ((struct command *)context)->can = text;
-    return is_interface(text) ? NULL : "needs a name of 1 to 15 characters without blanks";
-}
-
-static const char *take_interface(void *context, const char *text)
-{
-    struct command *c = context;
-    if (!is_interface(text)) {
-        return "needs a name of 1 to 15 characters without blanks";
-    }
-    c->send.interface = text;
-    return NULL;
-}
-
 static const char *take_begin(void *context, const char *text)
 {
     struct command *c = context;
@@ -181,10 +134,12 @@ struct raw {
 static bool read_table(struct command *c, struct raw *raw, int argc, char **argv, int *exit_code)
 {
     struct hs_taker circle = {take_circle, c}, straight = {take_straight, c},
-                    interface = {take_interface, c}, begin = {take_begin, c}, rain = {take_rain, c},
-                    jammer = {take_jammer, c}, bind = {take_bind, c}, can = {take_can, c},
-                    from = {take_from, c}, ask = {take_ask, c}, live = {take_live, c},
-                    exercise_rate = {take_exercise_rate, c}, malfunction = {take_malfunction, c};
+                    interface = {hs_take_interface, &c->send.interface}, begin = {take_begin, c},
+                    rain = {take_rain, c}, jammer = {take_jammer, c},
+                    bind = {hs_take_address, &c->bind}, can = {hs_take_interface, &c->can},
+                    from = {hs_take_address, &c->from}, ask = {hs_take_address, &c->ask},
+                    live = {take_live, c}, exercise_rate = {take_exercise_rate, c},
+                    malfunction = {take_malfunction, c};
     const struct hs_option options[] = {
         {"TRACK", HS_INPUT_ARGUMENT, &c->track_path, 0, 0, NULL,
          "a .csv, .gpx, .igc, .kml or .kmz file, plain or .gz; - is standard input", false},

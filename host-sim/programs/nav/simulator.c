@@ -3,6 +3,7 @@
 #include "drv/can_socket.h"
 #include "hs/atomic_file.h"
 #include "hs/error.h"
+#include "hs/real_time.h"
 #include "hs/report.h"
 #include "hs/udp.h"
 #include "nav/bridge.h"
@@ -10,9 +11,7 @@
 #include <arpa/inet.h>
 #include <errno.h>
 #include <math.h>
-#include <signal.h>
 #include <string.h>
-#include <time.h>
 
 enum { STEP_MS = 2, BATCH = 64, XPLANE_PORT = 49000, ASK_AGAIN_US = 5000000 };
 
@@ -29,21 +28,6 @@ struct flight {
     enum nav_bridge_mood mood;
     uint8_t bytes[NAV_TOLD_BYTES + 1]; /* one more, so that a longer datagram is seen to be one */
 };
-
-static volatile sig_atomic_t is_interrupted;
-
-static void interrupt(int number)
-{
-    (void)number;
-    is_interrupted = 1;
-}
-
-static int64_t clock_us(clockid_t clock)
-{
-    struct timespec t;
-    clock_gettime(clock, &t);
-    return (int64_t)t.tv_sec * 1000000 + t.tv_nsec / 1000;
-}
 
 /* ---- where the frames go ---- */
 
@@ -149,7 +133,7 @@ static int receive(struct flight *f, int64_t ahead_us)
         const uint64_t port = f->command->ask ? 0 : ntohs(from.sin_port);
         nav_bridge_take(f->bridge, f->bytes, length,
                         (uint64_t)ntohl(from.sin_addr.s_addr) << 16 | port,
-                        clock_us(CLOCK_MONOTONIC) + ahead_us);
+                        hs_clock_us(CLOCK_MONOTONIC) + ahead_us);
     }
     return 0;
 }
@@ -169,12 +153,12 @@ static void tell_mood(struct flight *f, int64_t now_us)
 static int fly(struct flight *f)
 {
     /* UTC that is never set: it follows the monotonic clock from here on. */
-    const int64_t ahead_us = clock_us(CLOCK_REALTIME) - clock_us(CLOCK_MONOTONIC);
-    int64_t now_us = f->begun_us = clock_us(CLOCK_MONOTONIC) + ahead_us;
+    const int64_t ahead_us = hs_clock_us(CLOCK_REALTIME) - hs_clock_us(CLOCK_MONOTONIC);
+    int64_t now_us = f->begun_us = hs_clock_us(CLOCK_MONOTONIC) + ahead_us;
     const int64_t until_us =
         f->command->seconds > 0 ? now_us + llround(f->command->seconds * 1e6) : INT64_MAX;
     f->asked_us = now_us - ASK_AGAIN_US;
-    while (!is_interrupted && now_us < until_us) {
+    while (!hs_is_interrupted() && now_us < until_us) {
         if (f->command->ask && now_us - f->asked_us >= ASK_AGAIN_US) {
             ask(f, false); /* again and again: it may have been started after this program */
             f->asked_us = now_us;
@@ -182,7 +166,7 @@ static int fly(struct flight *f)
         if (receive(f, ahead_us) < 0) {
             return -1;
         }
-        now_us = clock_us(CLOCK_MONOTONIC) + ahead_us;
+        now_us = hs_clock_us(CLOCK_MONOTONIC) + ahead_us;
         if (nav_bridge_step(f->bridge, now_us) != 0 || flush_output(f) != 0) {
             return hs_error(f->has_file ? f->command->out_path : "standard output",
                             "free some space, or read to the end", "cannot be written: %s",
@@ -265,8 +249,7 @@ int nav_fly_simulator(const struct command *c)
         .datum = c->datum == NAV_DATUM_BY_RECORD ? NAV_DATUM_SEA_LEVEL : c->datum,
         .height_offset_m = c->height_offset_m};
     f = (struct flight){.command = c, .mood = NAV_BRIDGE_MOODS};
-    signal(SIGINT, interrupt);
-    signal(SIGTERM, interrupt);
+    hs_catch_interrupts();
     const char *bind_to = c->bind ? c->bind : c->ask ? "0.0.0.0" : NULL;
     if (hs_udp_open(&f.udp, settings.is_xplane ? c->xplane_port : c->flightgear_port, bind_to,
                     NULL) != 0) {
