@@ -22,6 +22,7 @@ WITHOUT_LOOPS := base/% table/% bus/% nav/% page/% unit/% map/db map/detail map/
     targets/chip_sector targets/chip_patch radar/patch_rain radar/sector radar/track radar/track_sight \
     display/test_pattern display/symbols display/overlay display/view display/cursor
 $(foreach f,$(WITHOUT_LOOPS),$(eval $(O)/firmware/$f.o: OPT_core := $(OPT_rest)))
+$(foreach f,$(UNROLLED),$(eval $(O)/$f.o: OPT_core += -funroll-loops))
 $(call compile, fixed/,    fixed/,    $$(CFLAGS_fixed) $$(OPT_core))
 $(call compile, firmware/, firmware/, $$(call CFLAGS_room,$$(ROOM)) $$(OPT_core))
 $(call compile, drivers/,  drivers/,  $$(CFLAGS_drivers))

@@ -14,9 +14,13 @@ OPT      := -O2 -g -mcpu=cortex-a53 -ffreestanding -fno-pic -fno-stack-protector
     -fcallgraph-info=su # for the deepest stack (tests/zcu102/memory.py)
 # The two lowest layers are integers and make vectors of loops; drivers and board run in interrupts, which keep their
 # hands off the vector registers, and before the MMU allows unaligned access.
-OPT_core := -O3 -funroll-loops
+OPT_core := -O3
+# Where it pays for its bytes: what runs for every cell, pixel or byte of a tile.
+UNROLLED := $(addprefix firmware/,display/composer map/tile_unpack radar/antenna radar/beam radar/line \
+    radar/receiver targets/target_line \
+    $(addprefix kernels/arm64/,beam grain layover levels noise bins))
 OPT_rest := -Os # of what has no such loops
-OPT_board := -mgeneral-regs-only -mstrict-align
+OPT_board := $(OPT_rest) -mgeneral-regs-only -mstrict-align
 
 # Instead of the programs and tests of a PC.
 PARTS := bsp/zcu102/zcu102.mk tests/zcu102/images/images.mk

@@ -3,7 +3,9 @@
 CFLAGS_drivers += $(OPT_board)
 CFLAGS_bsp     += $(OPT_board)
 # Nothing of the display's runs in interrupts, and a picture has many pixels.
-$(O)/drivers/display/%.o: OPT_board := -O3
+$(O)/drivers/display/display_dp.o: OPT_board := -O3
+# Every tile goes through it.
+$(O)/bsp/zcu102/crc32c.o: OPT_board += -O2
 LDSCRIPT       := linker/zcu102.ld
 BOARD_OBJS     := $(call objs,$(filter-out %/main.c,$(wildcard bsp/zcu102/*.c))) \
     $(patsubst %.S,$(O)/%.o,$(wildcard bsp/zcu102/*.S))
