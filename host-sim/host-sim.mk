@@ -4,6 +4,7 @@ $(call host_library, lib,          fixed firmware,                              
 $(call host_library, gis,          lib,                                                 gdal proj)
 $(call host_library, image,        lib fixed firmware,                                  liblz4)
 $(call host_library, radar,        lib fixed firmware)
+$(call host_library, trust,        lib fixed firmware,                                  libcrypto)
 $(call host_library, classify,     gis lib,                                             openblas)
 $(call host_library, resample,     image gis lib fixed firmware)
 $(call host_library, terrain,      resample image gis lib fixed firmware)

@@ -9,7 +9,7 @@ comma := ,
 SANITIZERS     := address,undefined,float-cast-overflow
 LINK_sanitized := -fsanitize=$(SANITIZERS)$(if $(FUZZER),$(comma)fuzzer)
 VARIANT_CFLAGS  = $(CFLAGS_host) -Itests/support -Itests/golden -Ibsp/panel-linux $(VARIANT_PKGS) $(EXTRA_CFLAGS)
-VARIANT_PKGS    = $(eval VARIANT_PKGS := $(call pkgs,cflags,gdal openblas fftw3 sdl2 libdrm libusb-1.0))$(VARIANT_PKGS)
+VARIANT_PKGS    = $(eval VARIANT_PKGS := $(call pkgs,cflags,gdal openblas fftw3 sdl2 libdrm libusb-1.0 libcrypto))$(VARIANT_PKGS)
 
 # archive ARCHIVE,SOURCES: an archive, and that of each variant.
 define archive_rules

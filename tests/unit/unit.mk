@@ -50,6 +50,7 @@ $(call unit_tests, bsp/panel-linux,             bus lib firmware fixed drivers, 
 $(call unit_tests, host-sim/lib,                gis lib fixed firmware,               db)
 $(call unit_tests, host-sim/classify,           classify gis lib)
 $(call unit_tests, host-sim/image,              image lib fixed firmware,             db)
+$(call unit_tests, host-sim/trust,              trust lib fixed firmware)
 $(call unit_tests, host-sim/terrain,            terrain image lib fixed firmware,     db)
 $(call unit_tests, host-sim/reflectivity,       reflectivity gis lib,                 db)
 $(call unit_tests, host-sim/infrared,           infrared reflectivity gis lib,        db)
