@@ -5,12 +5,12 @@ the loopback interface."""
 import os
 import pathlib
 import resource
-import subprocess
 import sys
 import tempfile
 import threading
 
 sys.path.append(str(pathlib.Path(__file__).resolve().parents[1] / "ios"))
+from server import Server  # noqa: E402  pylint: disable=wrong-import-position
 from wire import Page  # noqa: E402  pylint: disable=wrong-import-position
 
 FRAMES_A_S, PAGES = 8000, 10
@@ -33,18 +33,13 @@ def main():
         lines.append(f"({3 + seconds:.6f}) can0 100#00000000FFFFFFFF\n")
         log.write_text("".join(lines))
         (pathlib.Path(folder) / "index.html").write_text("<title>bench</title>")
-        server = subprocess.Popen([program, "--image", image, "--site", folder, "--port", "0", "--log", log],
-                                  stderr=subprocess.PIPE, text=True)
-        port = int(server.stderr.readline().rstrip("/\n").rsplit(":", 1)[1])
         counts = []
-        threads = [threading.Thread(target=hear, args=(Page(port), counts)) for _ in range(PAGES)]
-        for thread in threads:
-            thread.start()
-        for thread in threads:
-            thread.join()
-        server.terminate()
-        server.wait()
-        server.stderr.close()
+        with Server("--image", image, "--site", folder, "--log", log, program=program) as server:
+            threads = [threading.Thread(target=hear, args=(Page(server.port), counts)) for _ in range(PAGES)]
+            for thread in threads:
+                thread.start()
+            for thread in threads:
+                thread.join()
     lost = sum(frames + 1 - count for count in counts if count < frames + 1)
     used = resource.getrusage(resource.RUSAGE_CHILDREN)
     percent = 100 * (used.ru_utime + used.ru_stime) / (seconds + 3)

@@ -3,23 +3,15 @@
  * clock has come to them. Usage: node replay_server.mjs SITE IMAGE FOLDER SPEED; prints its address.
  *
  *     GET /pause/NAME, /resume/NAME, /hold/NAME?ms=N    the display's lines stop, go on, come later */
-import crypto from 'node:crypto';
 import fs from 'node:fs';
 import path from 'node:path';
 
 import {serve} from '../../bsp/web/serve.mjs';
+import {acceptSockets, frameOf} from '../web/ws_server.mjs';
 
-const GUID = '258EAFA5-E914-47DA-95CA-C5AB0DC85B11'; // RFC 6455, 1.3
 const TICK_MS = 20;
 const [site, image, folder, speed] = [...process.argv.slice(2, 5), Number(process.argv[5])];
 const displays = new Map(); // by name: {lines, isPaused, holdMs}
-
-/* An unmasked text frame (RFC 6455, 5.2). */
-function frameOf(text) {
-    const bytes = Buffer.from(text), n = bytes.length;
-    const head = n < 126 ? [0x81, n] : n < 65536 ? [0x81, 126, n >> 8, n & 255] : [0x81, 127, 0, 0, 0, 0, n >>> 24, n >> 16 & 255, n >> 8 & 255, n & 255];
-    return Buffer.concat([Buffer.from(head), bytes]);
-}
 
 const usOf = (line) => {
     const m = /^\((\d+)\.(\d{6})\) unit /.exec(line);
@@ -77,12 +69,8 @@ server.on('request', (request, response) => {
     }
     return files(request, response);
 });
-server.on('upgrade', (request, socket) => {
-    const display = displays.get(decodeURIComponent(request.url.split('/')[2] ?? ''));
-    const accept = crypto.createHash('sha1').update(request.headers['sec-websocket-key'] + GUID).digest('base64');
-    socket.write('HTTP/1.1 101 Switching Protocols\r\nUpgrade: websocket\r\nConnection: Upgrade\r\n'
-        + `Sec-WebSocket-Accept: ${accept}\r\nSec-WebSocket-Protocol: ${request.headers['sec-websocket-protocol']}\r\n\r\n`);
-    const timer = display ? stream(display, socket) : 0;
-    socket.on('error', () => {}).on('close', () => clearInterval(timer));
+acceptSockets(server, (socket, {url}) => {
+    const display = displays.get(decodeURIComponent(url.split('/')[2] ?? ''));
+    return display ? stream(display, socket) : 0;
 });
 console.log(`http://127.0.0.1:${server.address().port}/`);

@@ -1,47 +1,28 @@
 """landmass-ios as browsers meet it, and as those meet it who mean no good. TAP."""
-import json
 import os
 import pathlib
 import shutil
-import signal
 import subprocess
 import sys
 import time
 
-ROOT = pathlib.Path(__file__).resolve().parents[2]
-sys.path[:0] = [str(ROOT / "tests/web"), str(ROOT / "tests/ios")]
-import test_browser as web  # noqa: E402  pylint: disable=wrong-import-position
-from wire import ask, connect, Page, BINARY  # noqa: E402  pylint: disable=wrong-import-position
+import server
+from server import BUILD
+from wire import connect, Page, BINARY
 
-BUILD = pathlib.Path(os.environ.get("BUILD", "build/bench-linux"))
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "web"))
+import browser  # noqa: E402  pylint: disable=wrong-import-position
+import tap  # noqa: E402  pylint: disable=wrong-import-position
+
 TMP = BUILD / "tmp/ios_server"
 TOKEN = "0123456789abcdef0123456789abcdef"
 TARGET = "712#1E0300014A000000"  # 1810, LONG: a latitude of live target 0
 RAIN = "708#1E02000142300000"    # 1800
 
 
-class Server:
-    """A server that runs within `with`."""
-
+class Server(server.Server):
     def __init__(self, *words):
-        self.words = [BUILD / "bin/landmass-ios", "--image", TMP / "scene.lmdb", "--site", TMP / "site", "--port", "0", *words]
-
-    def __enter__(self):
-        self.child = subprocess.Popen(list(map(str, self.words)), stderr=subprocess.PIPE, text=True)
-        self.port = int(self.child.stderr.readline().rstrip("/\n").rsplit(":", 1)[1])
-        return self
-
-    def __exit__(self, *_):
-        self.child.send_signal(signal.SIGTERM)
-        self.said = self.child.stderr.read()
-        self.status = self.child.wait(timeout=20)
-        self.child.stderr.close()
-
-    def get(self, path, **more):
-        return ask(self.port, path, **more)
-
-    def json(self, path):
-        return json.loads(self.get(path)[2])
+        super().__init__("--image", TMP / "scene.lmdb", "--site", TMP / "site", *words)
 
 
 def is_past_end(line):
@@ -52,7 +33,7 @@ def makes_ready():
     shutil.rmtree(TMP, ignore_errors=True)
     (TMP / "site/web").mkdir(parents=True)
     (TMP / "recordings").mkdir()
-    web.make_scene(TMP)
+    browser.make_scene(TMP)
     (TMP / "site/index.html").write_text("<title>station</title>")
     (TMP / "site/page.mjs").write_text("export const one = 1;\n")
     (TMP / "site/web/a.wasm").write_bytes(b"\0asm")
@@ -218,7 +199,7 @@ def test_a_token_is_asked_for_where_there_is_one():
         assert s.get("/", headers={"Authorization": f"Bearer {TOKEN}"})[0] == 200
         assert Page(s.port, headers={"Cookie": f"landmass_token={TOKEN}"}).status == 101
     for words in (("--bind", "0.0.0.0"), ("--token-file", TMP / "site/page.mjs"), ("--site", TMP / "nowhere")):
-        done = subprocess.run([*map(str, Server(*words).words), "--seconds", "0.1"], stderr=subprocess.PIPE, text=True, check=False)
+        done = subprocess.run([*Server(*words).command, "--port", "0", "--seconds", "0.1"], stderr=subprocess.PIPE, text=True, check=False)
         assert done.returncode != 0 and done.stderr.startswith("landmass-ios: "), (words, done.stderr)
 
 
@@ -286,18 +267,7 @@ def test_the_map_is_drawn_where_the_database_lies():
 
 def main():
     makes_ready()
-    tests = {name.removeprefix("test_"): test for name, test in globals().items() if name.startswith("test_") and callable(test)}
-    print(f"1..{len(tests)}")
-    failed = 0
-    for number, (name, test) in enumerate(tests.items(), 1):
-        try:
-            test()
-            print(f"ok {number} - {name}")
-        except Exception as error:  # pylint: disable=broad-except
-            failed += 1
-            print(f"not ok {number} - {name}\n# {type(error).__name__}: {error!s:.500} at line {error.__traceback__.tb_next.tb_lineno}")
-        sys.stdout.flush()
-    return 1 if failed else 0
+    return tap.run([test for name, test in globals().items() if name.startswith("test_")])
 
 
 if __name__ == "__main__":

@@ -1,24 +1,22 @@
 """The instructor's page in Chromium: every control is worked, its frames are taken from the bus, and a display that
 hears them is read. TAP."""
 import json
-import os
 import pathlib
-import shutil
 import signal
-import subprocess
 import sys
 import time
 
-ROOT = pathlib.Path(__file__).resolve().parents[2]
-sys.path[:0] = [str(ROOT / "tests/web"), str(ROOT / "tests/ios")]
-import test_browser as web  # noqa: E402  pylint: disable=wrong-import-position
+from server import BUILD, Server
+
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "web"))
+import browser as web  # noqa: E402  pylint: disable=wrong-import-position
+import tap  # noqa: E402  pylint: disable=wrong-import-position
 
 try:
     from glass import Glass
 except ImportError:
     Glass = None
 
-BUILD = pathlib.Path(os.environ.get("BUILD", "build/bench-linux"))
 TMP = BUILD / "tmp/ios"
 NORTH = (46.12, 11.0)       # ahead of the aircraft, a third of the way up the glass
 FARTHER = (46.3, 11.0)
@@ -475,7 +473,7 @@ def stale_navigation_and_a_lost_connection_are_plain(p, _):
     p.b.until("document.getElementById('own').textContent.includes('LOST')")
     server.child.send_signal(signal.SIGCONT)
     p.b.until("document.getElementById('own').textContent.startsWith('Own aircraft,')")
-    server.stop()
+    server.stop(signal.SIGKILL)
     p.b.until("document.getElementById('lost').textContent.includes('Connection lost')")
     assert p.b.find("freeze").is_enabled() is False and p.b.find("connection").text == "NO CONNECTION"
     server.start()
@@ -612,55 +610,23 @@ TESTS = [a_target_is_placed_and_stands_on_the_glass, a_target_that_is_dragged_mo
          the_page_asks_no_other_server_and_has_no_error]
 
 
-class Server:
-    """landmass-ios with a flight on its bus; it comes back at the same port."""
-
-    def __init__(self, log):
-        self.log, self.port = log, 0
-        self.start()
-
-    def start(self):
-        words = [BUILD / "bin/landmass-ios", "--image", TMP / "scene.lmdb", "--site", BUILD / "ios", "--port", self.port,
-                 "--log", self.log, "--display", f"left:20={TMP}"]
-        self.child = subprocess.Popen([*map(str, words)], stderr=subprocess.PIPE, text=True)
-        self.url = next(word for word in self.child.stderr.readline().split() if word.startswith("http"))
-        self.port = self.url.split(":")[2].strip("/")
-
-    def stop(self):
-        self.child.kill()
-        self.child.wait()
-
-
 def main():
-    lacks = "python3-selenium" if web.webdriver is None else "python3-gdal" if Glass is None else next(
-        (name for name in ("chromium", "chromedriver", "node") if shutil.which(name) is None), None)
-    if lacks:
-        print(f"ok 1 # SKIP the instructor's page in a browser\n# skipped: {lacks} is missing: run make deps\n1..1")
-        return 0
+    missing = web.lacks() or ("" if Glass else "python3-gdal is missing: run make deps")
+    if missing:
+        return tap.skip_all("the instructor's page in a browser", missing)
     TMP.mkdir(parents=True, exist_ok=True)
     web.make_scene(TMP)
     glass = Glass(BUILD / "bin", TMP / "scene.lmdb", TMP / "glass")
     glass.run("landmass-nav", "--straight", "45.7,11,0,3000,60", "--seconds", 600, "--out", TMP / "nav.log", "--quiet")
-    server = Server(TMP / "nav.log")
-    page, failed = Page(server.url), 0
-    page.server = server
-    tests = [t for t in TESTS if len(sys.argv) < 2 or t.__name__ in sys.argv[1:]]
-    try:
-        page.start()
-        for number, test in enumerate(tests, 1):
-            begin = time.monotonic()
-            try:
-                page.reset()
-                test(page, glass)
-                print(f"ok {number} - {test.__name__}\n# {time.monotonic() - begin:.1f} s", flush=True)
-            except Exception as error:  # pylint: disable=broad-except
-                failed += 1
-                print(f"not ok {number} - {test.__name__}\n# {type(error).__name__}: {error}", flush=True)
-    finally:
-        page.b.driver.quit()
-        server.stop()
-    print(f"1..{len(tests)}")
-    return failed > 0
+    with Server("--image", TMP / "scene.lmdb", "--site", BUILD / "ios", "--log", TMP / "nav.log", "--display",
+                f"left:20={TMP}") as server:
+        page = Page(server.url)
+        page.server = server
+        try:
+            page.start()
+            return tap.run(TESTS, page, glass, before=lambda p, _: p.reset())
+        finally:
+            page.b.driver.quit()
 
 
 if __name__ == "__main__":

@@ -1,32 +1,14 @@
 """The page in Chromium: golden pictures, every control, and nothing from elsewhere. TAP."""
-import os
-import pathlib
 import shutil
 import subprocess
 import sys
 import time
 
-try:
-    from selenium import webdriver
-    from selenium.webdriver.common.action_chains import ActionChains
-    from selenium.webdriver.common.by import By
-    from selenium.webdriver.common.keys import Keys
-except ImportError:
-    webdriver = None
+import browser
+import tap
+from browser import ActionChains, By, Keys, BUILD, ROOT, make_scene, node
 
-ROOT = pathlib.Path(__file__).resolve().parents[2]
-BUILD = pathlib.Path(os.environ.get("BUILD", "build/bench-linux"))
 SITE = BUILD / "tmp/web/site"
-WAIT_S = 60
-
-
-def make_scene(folder):
-    """A golden country as an image file: 46 N 11 E is in its middle."""
-    flash = folder / "golden.flash"
-    subprocess.run([BUILD / "bin/tests/zcu102/golden_flash", flash], check=True)
-    data = flash.read_bytes()
-    offset, size = (int.from_bytes(data[at:at + 8], "little") for at in (32, 40))
-    (folder / "scene.lmdb").write_bytes(data[offset:offset + size])
 
 
 def make_site():
@@ -43,48 +25,7 @@ def make_site():
                     SITE.parent / "bus.log"], check=True, stdout=subprocess.DEVNULL)
 
 
-def node(*words):
-    """A program of node that prints where it listens, first of all."""
-    child = subprocess.Popen(["node", *map(str, words)], stdout=subprocess.PIPE, text=True)
-    return child, child.stdout.readline().split()[0]
-
-
-class Browser:
-    def __init__(self, url):
-        options = webdriver.ChromeOptions()
-        for word in ("--headless=new", "--no-sandbox", "--disable-gpu", "--disable-dev-shm-usage",
-                     "--window-size=1280,860"):
-            options.add_argument(word)
-        options.set_capability("goog:loggingPrefs", {"browser": "ALL"})
-        self.driver = webdriver.Chrome(options=options)
-        self.url = url
-
-    def get(self, page=""):
-        self.driver.get(self.url + page)
-
-    def find(self, name):
-        return self.driver.find_element(By.ID, name)
-
-    def ask(self, expression):
-        return self.driver.execute_script(f"return {expression}")
-
-    def until(self, expression):
-        """Wait until an expression is true; what it is at the end."""
-        end = time.monotonic() + WAIT_S
-        while not self.ask(f"!!({expression})"):
-            if time.monotonic() > end:
-                raise AssertionError(f"{expression} is not true after {WAIT_S} s")
-            time.sleep(0.05)
-        return True
-
-    def press(self, *keys):
-        chain = ActionChains(self.driver)
-        for key in keys:
-            chain = chain.key_down(key)
-        for key in reversed(keys):
-            chain = chain.key_up(key)
-        chain.perform()
-
+class Browser(browser.Browser):
     def start(self):
         """The page, over the middle of the golden country."""
         self.get()
@@ -93,8 +34,8 @@ class Browser:
         self.until("landmass.unit.value('pictures') > 30")
 
 
-def value(browser, name):
-    return browser.ask(f"landmass.unit.value('{name}')")
+def value(b, name):
+    return b.ask(f"landmass.unit.value('{name}')")
 
 
 def golden_pictures_are_those_of_the_pc(b):
@@ -344,27 +285,17 @@ TESTS = [golden_pictures_are_those_of_the_pc, the_page_flies_and_asks_no_other_s
 
 
 def main():
-    lacks = "python3-selenium" if webdriver is None else next(
-        (name for name in ("chromium", "chromedriver", "node") if shutil.which(name) is None), None)
-    if lacks:
-        print(f"ok 1 # SKIP the page in a browser\n# skipped: {lacks} is missing: run make deps\n1..1")
-        return 0
+    missing = browser.lacks()
+    if missing:
+        return tap.skip_all("the page in a browser", missing)
     make_site()
     server, url = node(ROOT / "bsp/web/serve.mjs", SITE, 0)
-    browser, failed = Browser(url), 0
+    b = Browser(url)
     try:
-        for number, test in enumerate(TESTS, 1):
-            try:
-                test(browser)
-                print(f"ok {number} - {test.__name__}", flush=True)
-            except Exception as error:  # pylint: disable=broad-except
-                failed += 1
-                print(f"not ok {number} - {test.__name__}\n# {type(error).__name__}: {error}", flush=True)
+        return tap.run(TESTS, b)
     finally:
-        browser.driver.quit()
+        b.driver.quit()
         server.kill()
-    print(f"1..{len(TESTS)}")
-    return failed > 0
 
 
 if __name__ == "__main__":
