@@ -1,0 +1,14 @@
+# A panel that flies, the server, and the pages of both: what a page shows is what that panel's glass got.
+ifeq ($(BOARD),bench-linux)
+$(O)/tests/ios/virtual_panel.o: EXTRA_CFLAGS := -Ibsp/panel-linux -Ihost-sim/bus/include -Ihost-sim/lib/include
+$(O)/bin/tests/ios/virtual_panel: $(O)/tests/ios/virtual_panel.o $(PANEL_READER) $(LIB_panel) $(LIB_record) $(LIB_drivers) \
+    $(LIB_firmware) $(LIB_fixed)
+$(O)/bin/tests/ios/virtual_panel: LDLIBS = $(LINUX_LIBS)
+
+TESTS += $(O)/bin/tests/ios/test_panel_pages
+$(O)/bin/tests/ios/test_panel_pages: $(addprefix $(O)/bin/landmass-,ios nav) $(O)/bin/tests/ios/virtual_panel \
+    $(O)/bin/tests/zcu102/golden_flash $(O)/ios/.made tests/ios/panel.mk
+	@mkdir -p $(@D)
+	@printf '#!/bin/sh\nexec sh tests/web/run.sh /usr/bin/python3 -B tests/ios/test_panel_pages.py\n' >$@
+	@chmod +x $@
+endif
