@@ -26,7 +26,7 @@ $(call archive, $(LIB_drivers), $(DRIVERS:%=drivers/%.c))
 $(call archive, $(LIB_support), $(wildcard tests/support/*.c))
 
 # A make for another board: what this one was told about compilers and folders is not for it.
-make_board = env -u MAKEFLAGS -u MAKEOVERRIDES $(MAKE) --no-print-directory -j2 BOARD=$(1)
+make_board = env $(patsubst %,-u %,MAKEFLAGS MAKEOVERRIDES CC OPT OPT_core LDFLAGS) $(MAKE) --no-print-directory -j2 BOARD=$(1)
 
 .PHONY: help deps all run check check-clang check-panel panel package bench gallery fuzz rooms lint format clean
 .PHONY: web zcu102 run-zcu102 size bench-zcu102 coverage figures
