@@ -1,0 +1,151 @@
+/* From one sweep to the next: what a window has kept of another place is not shown, and the tiles
+ * of the lines to come are asked for in time. */
+#include "check.h"
+#include "hs/angle.h"
+#include "sector_world.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+enum { LINES_MAX = 1024 };
+
+/* ---- a window seen from two sides ---- */
+
+/* Soil, and a ridge to the south-west of the middle, across the sight from there. */
+static double ridge_m(void *ctx, const struct tiny_place *p)
+{
+    (void)ctx;
+    const bool is_ridge = p->east_m < -800 && p->north_m > -8500 && p->north_m < -7500;
+    return is_ridge ? 1400 : 0;
+}
+
+static struct sector_world *make_world(double (*elevation_m)(void *, const struct tiny_place *))
+{
+    struct tiny_spec spec = tiny_spec_at(46, 11);
+    spec.shift0 = 12;
+    spec.rows = spec.columns = 16;
+    spec.elevation_m = elevation_m;
+    struct sector_world *w = make_sector_world(&spec);
+    w->platform.height_m_q10 = 3000 * 1024;
+    w->platform.speed_mm_s = 150000;
+    return w;
+}
+
+static const struct lm_position middle_of_map = {0x20b60b61, 0x07d27d28};
+
+/* Put the platform 12 km south of the window's centre and some way to the east, with the centre
+ * straight ahead. Returns its distance. */
+static uint32_t face_centre(struct sector_world *w, int32_t east_bam)
+{
+    const struct lm_position centre = middle_of_map;
+    uint32_t distance_m_q8;
+    fx_bam_t azimuth;
+    w->platform.position.latitude = centre.latitude - hs_bam(0.108);
+    w->platform.position.longitude = centre.longitude + (fx_bam_t)east_bam;
+    lm_geo_inverse(w->platform.position, centre, &distance_m_q8, &azimuth);
+    w->platform.heading = w->platform.track = azimuth;
+    return distance_m_q8;
+}
+
+struct sweep {
+    uint8_t grey[LINES_MAX][LM_CELLS_MAX];
+    uint32_t lines, edge_m_q8;
+    bool has_foreground;
+};
+
+static void keep_sweep(struct sector_world *w, struct sweep *kept)
+{
+    struct lm_sector *s = &w->sector;
+    do {
+        memset(w->line.grey, 0, sizeof w->line.grey);
+        const uint32_t drawn = draw_line(w);
+        assert_true(drawn < LINES_MAX);
+        memcpy(kept->grey[drawn], w->line.grey, s->slant.cells);
+    } while (!lm_sector_is_at_edge(s));
+    kept->lines = s->lines;
+    kept->edge_m_q8 = s->edge_m_q8;
+    kept->has_foreground = s->foreground.grid.cells != 0;
+}
+
+/* Greys that differ by more than a step, of all that are lit in either. */
+static uint32_t differing(const struct sweep *a, const struct sweep *b)
+{
+    uint32_t count = 0;
+    for (uint32_t i = 0; i < a->lines; i++) {
+        for (uint32_t k = 0; k < LM_CELLS_MAX; k++) {
+            count += abs(a->grey[i][k] - b->grey[i][k]) > 1;
+        }
+    }
+    return count;
+}
+
+TEST(a_window_shows_nothing_of_where_its_last_sweep_was_seen_from)
+{
+    static const uint8_t fields[] = {LM_FOV_EXP, LM_FOV_DBS1};
+    static struct sweep from_west, after, anew;
+    for (size_t f = 0; f < sizeof fields; f++) {
+        struct sector_world *w = make_world(ridge_m);
+        const struct lm_sector_command command = {.centre = middle_of_map,
+                                                  .mode = LM_SECTOR_GM,
+                                                  .fov = fields[f],
+                                                  .range_index =
+                                                      (uint8_t)lm_radar_find_range(&w->radar, 10)};
+        /* As far from the centre, to 4 mm, on its east as on its west. */
+        const int32_t aside_bam = (int32_t)hs_bam(0.04);
+        const uint32_t distance_m_q8 = face_centre(w, -aside_bam);
+        lm_sector_start(&w->sector, &w->radar, &command, 0);
+        draw_sweep(w);
+        lm_sector_start(&w->sector, &w->radar, &command, 0);
+        keep_sweep(w, &from_west);
+        assert_true(from_west.has_foreground);
+        int32_t east_bam = aside_bam - 100;
+        while (face_centre(w, east_bam) != distance_m_q8 && east_bam < aside_bam + 100) {
+            east_bam++;
+        }
+        assert_int_equal(face_centre(w, east_bam), distance_m_q8);
+        keep_sweep(w, &after);
+        assert_int_equal(after.edge_m_q8, from_west.edge_m_q8);
+        assert_int_equal(after.lines, from_west.lines);
+
+        lm_sector_start(&w->sector, &w->radar, &command, 1);
+        lm_sector_begin(&w->sector, &w->map.tiles, &w->platform);
+        const struct lm_sector_turn turn = {.sweep = 1};
+        lm_sector_join(&w->sector, &turn);
+        keep_sweep(w, &anew);
+        print_message("# field %u: %u of another place, %u of the last sweep\n", fields[f],
+                      differing(&from_west, &anew), differing(&after, &anew));
+        assert_true(differing(&from_west, &anew) > 10000);
+        assert_int_equal(differing(&after, &anew), 0);
+        free_sector_world(w);
+    }
+}
+
+/* ---- tiles ahead ---- */
+
+/* Look-ups that found no tile when the beam, after line 0, is on a line further on. */
+static uint32_t missing_ahead(uint32_t lines)
+{
+    struct sector_world *w = make_world(NULL);
+    const struct lm_sector_command command = {.mode = LM_SECTOR_GM,
+                                              .fov = LM_FOV_NORM,
+                                              .range_index =
+                                                  (uint8_t)lm_radar_find_range(&w->radar, 10)};
+    w->platform.position = middle_of_map;
+    lm_sector_start(&w->sector, &w->radar, &command, 0);
+    assert_int_equal(draw_line(w), 0); /* and what it asked for is read */
+    w->sector.line = lines;
+    w->sector.has_taps = false;
+    lm_beam_clear(&w->sector.beam);
+    const uint32_t before = w->map.tiles.count.misses;
+    lm_sector_draw_line(&w->sector, &w->map.tiles, &w->platform, &w->tone, &w->line);
+    const uint32_t missing = w->map.tiles.count.misses - before;
+    free_sector_world(w);
+    return missing;
+}
+
+TEST(the_tiles_of_a_line_are_there_when_the_line_32_before_it_was_drawn)
+{
+    const uint32_t there = missing_ahead(32), not_yet = missing_ahead(64);
+    print_message("# missing: %u look-ups 32 lines ahead, %u 64 lines ahead\n", there, not_yet);
+    assert_true(there < 10 && not_yet > 50);
+}
