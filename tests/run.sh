@@ -14,8 +14,10 @@ mkdir -p "$logs"
 run_test() { # PROGRAM
     name=${1#"$o"/bin/}
     log=$logs/$(echo "$name" | tr / -).tap
+    started=$(date +%s)
     CMOCKA_MESSAGE_OUTPUT=TAP BUILD=$o LLVM_PROFILE_FILE=$o/profiles/$(basename "$log" .tap)-%2m.profraw timeout -k 5 "${TEST_TIMEOUT:-900}" "$1" >"$log" 2>&1 </dev/null
     status=$?
+    echo $(($(date +%s) - started)) >"${log%.tap}.seconds" # by which make mutants runs the quick ones first
     s=$(grep -cE '^(not )?ok .*# SKIP' "$log")
     p=$(grep -E '^ok ' "$log" | grep -vc '# SKIP')
     f=$(grep -E '^not ok ' "$log" | grep -vc '# SKIP')
