@@ -25,7 +25,7 @@ $(call host_library, reference,    lib fixed firmware.h,                        
 $(call host_library, sim,          nav lib fixed firmware,                              sdl2)
 $(call host_library, tables,       lib fixed firmware.h)
 
-$(call host_program, db,        vectors visual build infrared terrain resample reflectivity classify radar bus image gis lib fixed firmware)
+$(call host_program, db,        vectors visual build infrared terrain resample reflectivity classify radar trust bus image gis lib fixed firmware)
 $(call host_program, radar,     radar image lib fixed firmware)
 $(call host_program, target,    tracer visual gis lib fixed firmware)
 $(call host_program, netem,     netem tracer realradar gis lib fixed firmware)

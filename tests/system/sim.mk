@@ -26,3 +26,11 @@ $(LANDSAT_TEST): tests/system/test_real_infrared.py $(O)/bin/landmass-db
 	@mkdir -p $(@D)
 	@printf '#!/bin/sh\nexec $${PYTHON:-/usr/bin/python3} -B tests/system/test_real_infrared.py\n' >$@
 	@chmod +x $@
+
+# Signed images, judged by openssl and hashlib.
+SIGN_TEST := $(O)/bin/tests/system/test_sign
+TESTS += $(SIGN_TEST)
+$(SIGN_TEST): tests/system/test_sign.py $(O)/bin/landmass-db
+	@mkdir -p $(@D)
+	@printf '#!/bin/sh\nexec $${PYTHON:-/usr/bin/python3} -B tests/system/test_sign.py\n' >$@
+	@chmod +x $@

@@ -9,6 +9,7 @@
 #include "image/signatures.h"
 #include "image/targets.h"
 #include "lm/sensor.h"
+#include "signature.h"
 
 #include <inttypes.h>
 #include <math.h>
@@ -17,7 +18,7 @@
 
 static const struct hs_usage usage = {
     "inspect", "print what a database image holds",
-    "Prints header, sections, bands, levels, extents, classes, "
+    "Prints header, signature, sections, bands, levels, extents, classes, "
     "targets, signatures and manifest. `verify` checks the image's every byte."};
 
 static void report_position(const char *key, int32_t latitude, uint32_t longitude)
@@ -76,6 +77,7 @@ static void print_header(const struct image *image)
            image->has_radar ? image->radar.name : "none: the display's own");
     printf("bus table       %s\n",
            image->bus_name[0] ? image->bus_name : "none: the display's own");
+    db_signature_print(image);
     printf("centre          %.6f, %.6f\n", image_degrees((int32_t)h->centre_latitude),
            image_longitude_degrees(h->centre_longitude));
     printf("mean elevation  %.1f m above mean sea level\n", h->mean_elevation_m_q6 / 64.0);

@@ -6,6 +6,7 @@
 #include "image/codes.h"
 #include "image/verify.h"
 #include "lm/sensor.h"
+#include "signature.h"
 
 #include <inttypes.h>
 #include <stdbool.h>
@@ -17,7 +18,8 @@ static const struct hs_usage usage = {
     "Checks header, sections and unused bytes, every directory entry and tile record with its "
     "checksum and its place,\n"
     "elevations along the edges that tiles share, and that each coarser level holds the mean of "
-    "the finer one.\n"
+    "the finer one; and the\n"
+    "signature, if there is one.\n"
     "What is wrong is printed with its offset; the exit code is then 1."};
 
 enum { SHOWN_MAX = 100 };
@@ -44,10 +46,15 @@ static void print_radar(const struct image *image)
 
 int db_cmd_verify(int argc, char **argv)
 {
-    const char *path = NULL;
+    const char *path = NULL, *key = NULL;
     int exit_code;
     const struct hs_option options[] = {
         {"FILE", HS_INPUT_ARGUMENT, &path, 0, 0, NULL, "the database image", true},
+        {"key", HS_INPUT, &key, 0, 0, "FILE",
+         "the image must be signed by one of the public keys in this PEM file; left out: a "
+         "signature "
+         "must fit, whoever made it",
+         false},
     };
     if (!hs_options_read(&usage, options, sizeof options / sizeof options[0], argc, argv,
                          &exit_code)) {
@@ -76,10 +83,14 @@ int db_cmd_verify(int argc, char **argv)
         image_heights_report(image.db.classes.height_dm);
         print_radar(&image);
     }
+    const int trust = db_signature_check(&image, path, key);
     image_close(&image);
     if (findings.count > 0) {
         hs_error(path, "build it again", "%" PRIu64 " faults%s", findings.count,
                  is_complete ? "" : "; the rest could not be checked");
+        return HS_EXIT_FAILED;
+    }
+    if (trust != 0) {
         return HS_EXIT_FAILED;
     }
     printf("no faults\n");

@@ -13,6 +13,7 @@ int db_cmd_infrared(int argc, char **argv);
 int db_cmd_build(int argc, char **argv);
 int db_cmd_convert(int argc, char **argv);
 int db_cmd_inspect(int argc, char **argv);
+int db_cmd_sign(int argc, char **argv);
 int db_cmd_verify(int argc, char **argv);
 int db_cmd_export(int argc, char **argv);
 int db_cmd_qgis(int argc, char **argv);

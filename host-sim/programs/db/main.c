@@ -16,6 +16,7 @@ static const struct hs_command commands[] = {
     {"build", "make the database image from classes, reflectivity and terrain", db_cmd_build},
     {"inspect", "print what a database image holds", db_cmd_inspect},
     {"convert", "make an image of version 3 from one of version 2", db_cmd_convert},
+    {"sign", "sign a database image with a key of Ed25519", db_cmd_sign},
     {"verify", "check every byte of a database image", db_cmd_verify},
     {"qgis", "make a QGIS project to draw exemplars and corrections in", db_cmd_qgis},
     {"export", "write the planes of a database image as GeoTIFF", db_cmd_export},

@@ -340,6 +340,16 @@ def db_convert():
     assert message["cause"] in text and document["report"] == {} and document["files"] == []
 
 
+def db_sign():
+    subprocess.run(["openssl", "genpkey", "-algorithm", "ed25519", "-out", here("key.pem")], check=True, capture_output=True)
+    document, text = run("db", "sign", "--key", here("key.pem"), "--serial", "5", here("image.lmdb"), here("signed.lmdb"))
+    serial, key = find(r"serial (\d+), key (\w+)$", text)
+    assert document["report"]["bytes"] == os.path.getsize(here("signed.lmdb"))
+    assert document["report"]["signature"] == {"state": "fits", "serial": 5, "key_sha256": key} and serial == 5
+    document, _ = run("db", "inspect", here("signed.lmdb"))
+    assert document["report"]["signature"]["key_sha256"] == key
+
+
 def db_export():
     document, text = run("db", "export", here("image.lmdb"), "--out", here("planes"))
     r = document["report"]
@@ -804,7 +814,7 @@ def the_document_lists_every_command():
 # In this order: some read what others wrote.
 CHECKS = {"db import": db_import, "db train": db_train, "db segment": db_segment, "db correct": db_correct,
           "db vectors": db_vectors, "db reflect": db_reflect, "db infrared": db_infrared,
-          "db build": db_build, "db inspect": db_inspect, "db convert": db_convert, "db verify": db_verify, "db qgis": db_qgis, "db export": db_export,
+          "db build": db_build, "db inspect": db_inspect, "db convert": db_convert, "db sign": db_sign, "db verify": db_verify, "db qgis": db_qgis, "db export": db_export,
           "db picture": db_picture, "scene": scene, "nav": nav, "dis": dis, "ios": ios, "bus decode": bus_decode, "bus fields": bus_fields,
           "bus table": bus_table, "bus dbc": bus_dbc, "bus filters": bus_filters, "bus reports": bus_reports,
           "bus controls": bus_controls, "sim": sim,
