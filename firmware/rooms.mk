@@ -12,8 +12,8 @@ SEES_radar   := targets clutter kernels table map base
 SEES_bus     := base
 SEES_nav     := bus base
 SEES_page    := table base
-SEES_display := page table base
-SEES_unit    := display page nav bus radar targets clutter table map base
+SEES_display := page kernels table base
+SEES_unit    := display page nav bus radar targets clutter kernels table map base
 SEES_drivers := base
 
 ROOM_HEADERS  = $(patsubst %,-Ifirmware/%/include,$(1))

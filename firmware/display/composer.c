@@ -3,39 +3,7 @@
 #include "fx/mem.h"
 #include "fx/sat.h"
 
-enum { RUN_PX = 16, BLOCK_PX = LM_BLOCK_WIDTH_PX * LM_BLOCK_HEIGHT_PX };
-
-/* Compose eight pixels, the first of them the lowest byte. */
-static inline void compose_eight(uint32_t *restrict out, uint64_t greys,
-                                 const uint32_t *restrict colours)
-{
-    for (uint32_t k = 0; k < 8; k++) {
-        out[k] = colours[greys >> 8 * k & 255];
-    }
-}
-
-/* One table look-up a pixel, except in runs of black: more than half of the glass is beside the
- * sector or patch. `restrict` tells the compiler that table and picture do not overlap. */
-static void compose_row(uint32_t *restrict out, const uint8_t *restrict grey,
-                        const uint32_t *restrict colours, uint32_t pixels)
-{
-    const uint32_t black = colours[0];
-    const uint32_t *const end = out + pixels;
-    for (; end - out >= RUN_PX; out += RUN_PX, grey += RUN_PX) {
-        const uint64_t first = fx_load_u64(grey), second = fx_load_u64(grey + 8);
-        if ((first | second) == 0) {
-            for (size_t k = 0; k < RUN_PX; k++) {
-                out[k] = black;
-            }
-        } else {
-            compose_eight(out, first, colours);
-            compose_eight(out + 8, second, colours);
-        }
-    }
-    while (out < end) {
-        *out++ = colours[*grey++];
-    }
-}
+enum { BLOCK_PX = LM_BLOCK_WIDTH_PX * LM_BLOCK_HEIGHT_PX };
 
 void lm_composer_init(struct lm_composer *c, uint16_t width_px, uint16_t height_px)
 {
@@ -57,16 +25,32 @@ void lm_composer_begin(struct lm_composer *c, const struct lm_surface *surface)
     }
 }
 
+/* Set what the kernel reads beside the colours. */
+static void describe_colours(struct lm_k_colours *c)
+{
+    uint32_t tinted = 0;
+    for (uint32_t grey = 0; grey < LM_K_GREYS; grey++) {
+        const uint32_t colour = c->of_grey[grey], parts = colour >> c->shift;
+        for (uint32_t k = 0; k < LM_K_COLOUR_BYTES; k++) {
+            c->byte[k][grey] = (uint8_t)(colour >> 8 * k);
+        }
+        tinted |= parts ^ (parts & 255) * 0x10101u;
+    }
+    c->is_neutral = tinted == 0;
+}
+
 /* Take the palette's colours. Other ones change the whole glass. */
 static void take_colours(struct lm_composer *c, const struct lm_palette *palette)
 {
     uint32_t differs = 0;
-    for (uint32_t grey = 0; grey < 256; grey++) {
+    for (uint32_t grey = 0; grey < LM_K_GREYS; grey++) {
         const uint32_t colour = palette->picture[grey] << c->surface.shift;
-        differs |= colour ^ c->colour[grey];
-        c->colour[grey] = colour;
+        differs |= colour ^ c->colours.of_grey[grey];
+        c->colours.of_grey[grey] = colour;
     }
     if (differs != 0) {
+        c->colours.shift = c->surface.shift;
+        describe_colours(&c->colours);
         lm_damage_mark(&c->changed, &c->glass);
     }
 }
@@ -110,11 +94,14 @@ static void compose_plane(const struct lm_composer *c, const struct lm_plane *pl
     struct lm_rectangle r;
     struct lm_damage_walk walk = lm_damage_walk(&c->glass);
     while (lm_damage_next(&c->part, &walk, &r)) {
-        for (int32_t y = r.top; y < r.bottom; y++) {
-            compose_row(c->surface.pixels + (uint32_t)y * c->surface.stride_px + r.left,
-                        plane->pixels + (uint32_t)y * plane->width_px + r.left, c->colour,
-                        (uint32_t)(r.right - r.left));
-        }
+        const struct lm_k_area area = {
+            .grey = plane->pixels + (uint32_t)r.top * plane->width_px + r.left,
+            .pixel = c->surface.pixels + (uint32_t)r.top * c->surface.stride_px + r.left,
+            .grey_stride = plane->width_px,
+            .pixel_stride = c->surface.stride_px,
+            .width = (uint32_t)(r.right - r.left),
+            .height = (uint32_t)(r.bottom - r.top)};
+        lm_k_colour_area(&c->colours, &area);
     }
 }
 

@@ -12,3 +12,5 @@ endif
 
 # A run of cells in one tile has four or five groups, in a tile that stands in for another too.
 $(O)/firmware/kernels/%/tile_read.o: OPT_core += -fno-unroll-loops
+# A rectangle is some blocks wide.
+$(O)/firmware/kernels/arm64/colour.o: OPT_core += -fno-unroll-loops

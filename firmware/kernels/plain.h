@@ -4,6 +4,7 @@
 #define PLAIN_H
 
 #include "lm/kernels_clutter.h"
+#include "lm/kernels_display.h"
 #include "lm/kernels_map.h"
 #include "lm/kernels_radar.h"
 
@@ -28,5 +29,6 @@ extern __typeof__(lm_k_beam_sum) lm_k_beam_sum_c;
 extern __typeof__(lm_k_detect) lm_k_detect_c;
 extern __typeof__(lm_k_detect_in_rain) lm_k_detect_in_rain_c;
 extern __typeof__(lm_k_tone) lm_k_tone_c;
+extern __typeof__(lm_k_colour_area) lm_k_colour_area_c;
 
 #endif

@@ -36,6 +36,7 @@ struct input {
     struct lm_range_grid grid;
     struct lm_class_lut class_lut;
     struct lm_tone tone;
+    struct lm_k_colours colours;
 };
 
 /* What a kernel may write: two lines, of which entries first..end - 1 are compared. From entry
@@ -541,6 +542,41 @@ static void run_tone(const struct input *in, struct output *out, bool is_plain)
     out->room = in->cells;
 }
 
+/* Any rectangle of a small picture, in grey or in a tint. */
+static void draw_colours(struct input *in)
+{
+    const bool is_neutral = hs_rng_below(&in->rng, 2) != 0;
+    draw_grain(in);
+    in->colours.shift = (uint8_t)(8 * hs_rng_below(&in->rng, 2));
+    for (uint32_t grey = 0; grey < LM_K_GREYS; grey++) {
+        const uint32_t any = (uint32_t)hs_rng_u64(&in->rng);
+        const uint32_t parts = is_neutral ? (any & 255) * 0x10101u : any & 0xFFFFFF;
+        in->colours.of_grey[grey] = parts << in->colours.shift;
+        for (uint32_t k = 0; k < LM_K_COLOUR_BYTES; k++) {
+            in->colours.byte[k][grey] = (uint8_t)(parts << in->colours.shift >> 8 * k);
+        }
+    }
+    in->colours.is_neutral = is_neutral;
+    for (uint32_t n = 0; n < 5; n++) {
+        in->number[n] = (int32_t)hs_rng_below(&in->rng, 24);
+    }
+}
+
+static void run_colour_area(const struct input *in, struct output *out, bool is_plain)
+{
+    const uint32_t height = 1 + in->first % 6, most = ROOM / height - 24;
+    const uint32_t width = 1 + in->cells % most;
+    const struct lm_k_area area = {.grey = (const uint8_t *)in->grain_q5[0] + in->number[0],
+                                   .pixel = out->line[0] + in->number[1],
+                                   .grey_stride = width,
+                                   .pixel_stride = width + (uint32_t)in->number[2] % 8,
+                                   .width = width,
+                                   .height = height};
+    TWIN(lm_k_colour_area)(&in->colours, &area);
+    out->end[0] = ROOM;
+    out->room = ROOM;
+}
+
 static const struct kernel kernels[] = {
     {"lm_k_tile_read", draw_tiles, run_tile_read},
     {"lm_k_tile_blend", draw_blend, run_tile_blend},
@@ -563,6 +599,7 @@ static const struct kernel kernels[] = {
     {"lm_k_detect", draw_powers, run_detect},
     {"lm_k_detect_in_rain", draw_powers, run_detect_in_rain},
     {"lm_k_tone", draw_tone, run_tone},
+    {"lm_k_colour_area", draw_colours, run_colour_area},
 };
 
 enum { KERNELS = sizeof kernels / sizeof *kernels };

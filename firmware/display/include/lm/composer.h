@@ -12,6 +12,7 @@
 #define LM_COMPOSER_H
 
 #include "lm/draw_list.h"
+#include "lm/kernels_display.h"
 #include "lm/palette.h"
 #include "lm/scan_conv.h"
 
@@ -20,11 +21,11 @@ struct lm_composer {
     struct lm_damage changed;        /* marked by plane and list, not taken yet */
     struct lm_damage since[LM_AGES]; /* since[k]: changed since the picture shown k + 1 ago */
     struct lm_surface surface;
-    bool is_lent;          /* `surface` is */
-    struct lm_damage due;  /* what it lacks */
-    struct lm_damage part; /* what a step composes of it */
-    uint32_t band;         /* where the next step goes on */
-    uint32_t colour[256];  /* of the greys, as they stand on the surface */
+    bool is_lent;                /* `surface` is */
+    struct lm_damage due;        /* what it lacks */
+    struct lm_damage part;       /* what a step composes of it */
+    uint32_t band;               /* where the next step goes on */
+    struct lm_k_colours colours; /* as they stand on the surface */
     struct lm_draw_list list;
 };
 
@@ -40,7 +41,7 @@ uint32_t lm_composer_take(struct lm_composer *c, const struct lm_palette *palett
 
 /* Compose what is due, the list as it was noted last over the plane, until `pixels` are done. The
  * plane is NULL if the list covers all of the glass. True if nothing is due any more. Cost: some
- * 5,000 instructions; 3 a pixel, half of one where it is black; and what the list draws there. */
+ * 5,000 instructions; 1 to 3 a pixel (lm_k_colour_area); and what the list draws there. */
 bool lm_composer_run(struct lm_composer *c, const struct lm_plane *plane, uint32_t pixels);
 
 /* The surface was presented: the next one is older by a picture. */
