@@ -1,4 +1,6 @@
 """The page in Chromium: golden pictures, every control, and nothing from elsewhere. TAP."""
+import os
+import pathlib
 import shutil
 import subprocess
 import sys
@@ -8,7 +10,7 @@ import browser
 import tap
 from browser import ActionChains, By, Keys, BUILD, ROOT, make_scene, node
 
-SITE = BUILD / "tmp/web/site"
+SITE = pathlib.Path(os.environ.get("SITE", BUILD / "tmp/web/site"))  # another one only for what is measured
 
 
 def make_site():
@@ -56,6 +58,35 @@ def the_page_flies_and_asks_no_other_server(b):
     assert names and all(name.startswith((b.url, "data:")) for name in names), names
     errors = [entry for entry in b.driver.get_log("browser") if entry["level"] == "SEVERE"]
     assert not errors, errors
+
+
+def the_start_and_a_step_are_measured(b):
+    """Chromium's clock counts tenths of a millisecond: steps are timed 25 at a time."""
+    first = []
+    for _ in range(5):
+        b.get()
+        b.until("globalThis.landmass?.firstPictureMs")
+        first.append(b.ask("landmass.firstPictureMs"))
+    sizes = b.ask("performance.getEntriesByType('resource').concat(performance.getEntriesByType('navigation'))"
+                  ".filter(({name}) => !name.endsWith('.lmdb')).map(({name, decodedBodySize}) => [name, decodedBodySize])")
+    module = next(size for name, size in sizes if name.endswith(".wasm"))
+    steps = sorted(b.driver.execute_async_script("""
+        const done = arguments[0], took = [];
+        for (let n = 0; n < 400; n++) {
+            await landmass.unit.flash.settled();
+            const begun = performance.now();
+            for (let step = 0; step < 25; step++) {
+                landmass.step();
+            }
+            took.push((performance.now() - begun) / 25);
+        }
+        landmass.begunMs = null;
+        done(took);""".join(("(async () => {", "})()"))))
+    print(f"# first picture after {min(first):.0f} ms at best, {sorted(first)[2]:.0f} in the middle of 5; module {module} bytes, page "
+          f"{sum(size for _, size in sizes) - module}; a step {steps[0]:.3f} ms at least, {steps[200]:.3f} in the middle, "
+          f"{steps[-1]:.3f} at most")
+    assert min(first) < 5000 and module > 1e5 and len(sizes) > 8, (first, sizes)
+    assert steps[200] < 2, "a step takes more than half of its time"
 
 
 def every_key_of_the_bezel_acts_by_mouse(b):
@@ -275,6 +306,7 @@ def a_missing_image_is_said(b):
 
 
 TESTS = [golden_pictures_are_those_of_the_pc, the_page_flies_and_asks_no_other_server,
+         the_start_and_a_step_are_measured,
          every_key_of_the_bezel_acts_by_mouse, pages_open_by_key_and_by_button,
          the_cursor_moves_and_designate_draws_a_patch, a_gamepad_moves_the_cursor_flies_and_designates,
          a_finger_holds_a_key_and_flies, everything_has_a_name_and_comes_in_order,
@@ -288,7 +320,8 @@ def main():
     missing = browser.lacks()
     if missing:
         return tap.skip_all("the page in a browser", missing)
-    make_site()
+    if "SITE" not in os.environ:
+        make_site()
     server, url = node(ROOT / "bsp/web/serve.mjs", SITE, 0)
     b = Browser(url)
     try:

@@ -85,6 +85,7 @@ class Page {
         if (this.unit.hasNewPicture()) {
             this.context.putImageData(new ImageData(this.unit.paint(), SIDE, SIDE), 0, 0);
             this.figures.pictures++;
+            this.firstPictureMs ??= performance.now(); // since the page was asked for
         }
         this.tell();
     }
@@ -110,7 +111,8 @@ class Page {
         find('figures').textContent = `${(f.pictures * 1000 / ms).toFixed(0)} pictures a second; a step takes `
             + `${(f.stepMs / Math.max(f.steps, 1)).toFixed(2)} ms, ${f.worstMs.toFixed(1)} at worst; `
             + `${(bytes / 1e6).toFixed(1)} MB of ${(this.unit.flash.source.size / 1e6).toFixed(1)} read`
-            + (failures ? `, ${failures} reads failed` : '');
+            + (failures ? `, ${failures} reads failed` : '')
+            + (this.firstPictureMs ? `; the first picture came after ${(this.firstPictureMs / 1000).toFixed(1)} s` : '');
         find('description').textContent = this.unit.describe();
         find('flight-state').textContent = this.bus instanceof Flight ? this.bus.describe() : 'The bus flies.';
         this.figures = {steps: 0, stepMs: 0, worstMs: 0, pictures: 0, since: performance.now()};
