@@ -40,7 +40,8 @@ class Page:
         key = base64.b64encode(os.urandom(16))
         self.socket = connect(port)
         lines = [f"GET {path} HTTP/1.1", f"Host: {host or f'127.0.0.1:{port}'}", "Upgrade: websocket", "Connection: Upgrade",
-                 f"Sec-WebSocket-Key: {key.decode()}", "Sec-WebSocket-Version: 13", f"Sec-WebSocket-Protocol: {protocol}"]
+                 f"Sec-WebSocket-Key: {key.decode()}", "Sec-WebSocket-Version: 13"]
+        lines += [f"Sec-WebSocket-Protocol: {protocol}"] if protocol else []
         lines += [f"{name}: {value}" for name, value in (headers or {}).items()]
         self.socket.sendall("\r\n".join(lines).encode() + b"\r\n\r\n")
         self.rest = b""

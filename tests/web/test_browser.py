@@ -1,6 +1,4 @@
 """The page in Chromium: golden pictures, every control, and nothing from elsewhere. TAP."""
-import os
-import pathlib
 import shutil
 import subprocess
 import sys
@@ -8,23 +6,9 @@ import time
 
 import browser
 import tap
-from browser import ActionChains, By, Keys, BUILD, ROOT, make_scene, node
+from browser import ActionChains, By, Keys, BUILD, ROOT, node
+from site_of_tests import SITE, make_site, STEPS
 
-SITE = pathlib.Path(os.environ.get("SITE", BUILD / "tmp/web/site"))  # another one only for what is measured
-
-
-def make_site():
-    """The page as `make web` has it, with a golden country in place of the built-in scene."""
-    shutil.rmtree(SITE, ignore_errors=True)
-    shutil.copytree(ROOT / "bsp/web/page", SITE)
-    for name in ("goldens.html", "goldens_page.mjs", "goldens.mjs"):
-        shutil.copy(ROOT / "tests/web" / name, SITE)
-    for name in ("landmass.wasm", "golden.wasm"):
-        shutil.copy(ROOT / "build/web" / name, SITE)
-    make_scene(SITE)
-    (SITE.parent / "bad.log").write_text("no frame\n")
-    subprocess.run([BUILD / "bin/landmass-nav", "--straight", "45.95,11,0,3000,180", "--seconds", "20", "--out",
-                    SITE.parent / "bus.log"], check=True, stdout=subprocess.DEVNULL)
 
 
 class Browser(browser.Browser):
@@ -70,18 +54,7 @@ def the_start_and_a_step_are_measured(b):
     sizes = b.ask("performance.getEntriesByType('resource').concat(performance.getEntriesByType('navigation'))"
                   ".filter(({name}) => !name.endsWith('.lmdb')).map(({name, decodedBodySize}) => [name, decodedBodySize])")
     module = next(size for name, size in sizes if name.endswith(".wasm"))
-    steps = sorted(b.driver.execute_async_script("""
-        const done = arguments[0], took = [];
-        for (let n = 0; n < 400; n++) {
-            await landmass.unit.flash.settled();
-            const begun = performance.now();
-            for (let step = 0; step < 25; step++) {
-                landmass.step();
-            }
-            took.push((performance.now() - begun) / 25);
-        }
-        landmass.begunMs = null;
-        done(took);""".join(("(async () => {", "})()"))))
+    steps = sorted(b.driver.execute_async_script(f"const done = arguments[0]; {STEPS}.then(done)"))
     print(f"# first picture after {min(first):.0f} ms at best, {sorted(first)[2]:.0f} in the middle of 5; module {module} bytes, page "
           f"{sum(size for _, size in sizes) - module}; a step {steps[0]:.3f} ms at least, {steps[200]:.3f} in the middle, "
           f"{steps[-1]:.3f} at most")
@@ -320,8 +293,7 @@ def main():
     missing = browser.lacks()
     if missing:
         return tap.skip_all("the page in a browser", missing)
-    if "SITE" not in os.environ:
-        make_site()
+    make_site()
     server, url = node(ROOT / "bsp/web/serve.mjs", SITE, 0)
     b = Browser(url)
     try:
