@@ -9,13 +9,15 @@ GUID = b"258EAFA5-E914-47DA-95CA-C5AB0DC85B11"  # RFC 6455, 1.3
 TEXT, BINARY, CLOSE = 1, 2, 8
 
 
-def connect(port, seconds=5):
-    return socket.create_connection(("127.0.0.1", port), timeout=seconds)
+def connect(port, seconds=5, tls=None):
+    """A connection to this machine; `tls` is (a context of ssl, the server's name)."""
+    plain = socket.create_connection(("127.0.0.1", port), timeout=seconds)
+    return tls[0].wrap_socket(plain, server_hostname=tls[1]) if tls else plain
 
 
-def ask(port, path, headers=None, method="GET", host=None, body=b""):
+def ask(port, path, headers=None, method="GET", host=None, body=b"", tls=None):
     """(status, headers, body) of an answer; status 0: the server closed the connection."""
-    with connect(port) as s:
+    with connect(port, tls=tls) as s:
         lines = [f"{method} {path} HTTP/1.1", f"Host: {host or f'127.0.0.1:{port}'}", "Connection: close"]
         lines += [f"{name}: {value}" for name, value in (headers or {}).items()]
         s.sendall("\r\n".join(lines).encode("latin1") + b"\r\n\r\n" + body)
@@ -36,9 +38,9 @@ def ask(port, path, headers=None, method="GET", host=None, body=b""):
 class Page:
     """A socket of the server; `status` is 101 where it is open."""
 
-    def __init__(self, port, path="/bus", protocol="landmass-bus", headers=None, host=None):
+    def __init__(self, port, path="/bus", protocol="landmass-bus", headers=None, host=None, tls=None):
         key = base64.b64encode(os.urandom(16))
-        self.socket = connect(port)
+        self.socket = connect(port, tls=tls)
         lines = [f"GET {path} HTTP/1.1", f"Host: {host or f'127.0.0.1:{port}'}", "Upgrade: websocket", "Connection: Upgrade",
                  f"Sec-WebSocket-Key: {key.decode()}", "Sec-WebSocket-Version: 13"]
         lines += [f"Sec-WebSocket-Protocol: {protocol}"] if protocol else []

@@ -41,10 +41,10 @@ def node(*words):
 
 
 class Browser:
-    def __init__(self, url):
+    def __init__(self, url, *more):
         options = webdriver.ChromeOptions()
         for word in ("--headless=new", "--no-sandbox", "--disable-gpu", "--disable-dev-shm-usage",
-                     "--window-size=1280,860"):
+                     "--window-size=1280,860", *more):
             options.add_argument(word)
         options.set_capability("goog:loggingPrefs", {"browser": "ALL"})
         self.driver = webdriver.Chrome(options=options)
