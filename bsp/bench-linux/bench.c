@@ -108,6 +108,7 @@ int bench_open(struct bench *b, const struct bench_scene *scene, const struct be
                                  .can_2 = bus->can_2,
                                  .bus_nodes = bus->nodes,
                                  .bus_node = bus->node,
+                                 .bus_partner = bus->partner,
                                  .is_heading_magnetic = bus->is_heading_magnetic,
                                  .tells_reports = bus->tells_reports,
                                  .obeys_controls = bus->obeys_controls,

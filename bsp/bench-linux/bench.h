@@ -30,6 +30,7 @@ struct bench_bus {
     struct lm_board_table tables[LM_BUS_TABLES_MORE]; /* heard besides */
     const uint8_t *nodes;                             /* borrowed: lm_bus_hear_only; NULL: all */
     uint8_t node;             /* the unit's own CANaerospace node; 0: it only listens */
+    uint8_t partner;          /* the node that SWAP exchanges the page with; 0: there is none */
     bool is_heading_magnetic; /* LM_BUS_HEADING is from magnetic north */
     bool tells_reports;       /* it tells lm/canas_report.h as that node */
     bool obeys_controls;      /* of the bus: lm/canas_control.h */

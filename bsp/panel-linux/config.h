@@ -53,6 +53,7 @@ struct config {
     char can_2_table[CONFIG_PATH];
     struct config_nodes can_nodes;
     uint32_t can_node;
+    uint32_t can_partner;  /* 0: there is none */
     uint32_t can_heading;  /* 1: magnetic */
     uint32_t can_reports;  /* 1: on */
     uint32_t can_controls; /* 1: obey */

@@ -47,6 +47,9 @@ const struct config_row config_table[] = {
     OPTION(
         CONFIG_NUMBER, can_node, 0, 255, NULL, "can.node", "0..255", "0",
         "The panel's node on a CANaerospace bus, where it answers requests; 0: it only listens."),
+    OPTION(CONFIG_NUMBER, can_partner, 0, 255, NULL, "can.partner", "0..255", "0",
+           "The node of the other display, which SWAP exchanges the page with (docs/bus.md, \"Two "
+           "displays\"); 0: there is none. It needs can.node."),
     OPTION(CONFIG_CHOICE, can_heading, 0, 0, "true magnetic", "can.heading", "true | magnetic",
            "true",
            "What CANaerospace's heading angle (321) is from. A magnetic one needs the variation "

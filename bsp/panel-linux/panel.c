@@ -183,6 +183,9 @@ static void start_with_buses(struct panel *p)
     start_with_flash(p, p->board.flash);
     first[0] = p->unit->bus.profile;
     bus_open(&p->bus, has_first ? c->can : "", first[0], first[1], p->zero_us);
+    if (c->can_partner != 0 && (c->can_node == 0 || c->can_node == c->can_partner)) {
+        report(REPORT_ERROR, "can.partner: needs can.node, a number of its own: SWAP does nothing");
+    }
     report(REPORT_INFO, "bus: %s: table %s%s%s", c->can, first[0]->name, first[1] ? ", " : "",
            first[1] ? first[1]->name : "");
     if (c->can_2[0] != '\0') {
@@ -198,6 +201,7 @@ static int start_unit(struct panel *p, const struct lm_flash *flash)
         .can = &p->bus.port,
         .bus_nodes = p->config->can_nodes.is_list ? p->config->can_nodes.bits : NULL,
         .bus_node = (uint8_t)p->config->can_node,
+        .bus_partner = (uint8_t)p->config->can_partner,
         .is_heading_magnetic = p->config->can_heading != 0,
         .tells_reports = p->config->can_reports != 0,
         .obeys_controls = p->config->can_controls != 0,

@@ -126,7 +126,7 @@ static uint32_t switches_of(const struct lm_board *b)
     for (uint32_t i = 0; i < sizeof bits / sizeof *bits; i++) {
         word |= (uint32_t)bits[i] << i;
     }
-    return word;
+    return word | (uint32_t)b->bus_partner << RECORD_PARTNER_BIT;
 }
 
 void record_describe(struct record_head *head, const struct lm_board *board, uint64_t zero_us)

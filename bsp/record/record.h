@@ -85,7 +85,8 @@ struct record_head {
     uint32_t tile_slots, glass_step_px, noise_seed, flash_poll_limit;
     uint32_t node, hardware_revision;
     uint32_t switches; /* bits: magnetic, reports, obeys, whole, heading, strobe, borders,
-                          knows_profile, has a second interface */
+                          knows_profile, has a second interface; from bit 16 on the
+                          partner's node */
     char restart[24];  /* "-": none */
     char build[16];    /* record_build of the program that recorded */
     /* Not a word of the head, but a line below it. */
@@ -93,7 +94,8 @@ struct record_head {
     uint8_t nodes[LM_BUS_NODE_BYTES]; /* that are heard; without has_nodes all are */
 };
 
-enum { RECORD_HAS_TABLE = 1u << 7, RECORD_HAS_SECOND = 1u << 8 }; /* of the switches */
+/* Of the switches. */
+enum { RECORD_HAS_TABLE = 1u << 7, RECORD_HAS_SECOND = 1u << 8, RECORD_PARTNER_BIT = 16 };
 
 /* Recorder; the caller owns it, and it must not move while the unit runs. */
 struct recorder {

@@ -511,6 +511,7 @@ static void set_board(struct replay *p, struct lm_board *board)
     const struct record_head *h = &p->head;
     const uint32_t s = h->switches;
     board->bus_node = (uint8_t)h->node;
+    board->bus_partner = (uint8_t)(s >> RECORD_PARTNER_BIT);
     board->hardware_revision = (uint8_t)h->hardware_revision;
     board->is_heading_magnetic = (s & 1) != 0;
     board->tells_reports = (s >> 1 & 1) != 0;

@@ -57,6 +57,7 @@ uint32_t lm_bus_filters(const struct lm_bus_profile *profile,
         for (uint32_t i = LM_CONTROL_ITEM_STEP + 1; i < LM_CONTROL_ITEMS; i++) {
             add(&list, (struct lm_can_filter){LM_CONTROL_ID + i, LM_CAN_ID_STANDARD, false});
         }
+        add(&list, (struct lm_can_filter){LM_BUS_SWAP_ID, LM_CAN_ID_STANDARD, false});
     }
     return list.count;
 }

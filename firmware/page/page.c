@@ -1,6 +1,8 @@
 #include "lm/units.h"
 #include "page_table.h"
 
+#include <stddef.h>
+
 #include "fx/mem.h"
 #include "fx/sat.h"
 
@@ -158,7 +160,7 @@ static uint32_t press_rocker(struct lm_page *p, uint8_t button)
     case LM_ROCKER_GAIN: {
         const int32_t gain_db = fx_clamp_i32(p->gain_db + step, -LM_GAIN_MAX_DB, LM_GAIN_MAX_DB);
         const bool has_moved = gain_db != p->gain_db;
-        p->gain_db = (int16_t)gain_db;
+        p->gain_db = (int8_t)gain_db;
         return has_moved ? LM_EFFECT_TONE : 0;
     }
     case LM_ROCKER_SYM:
@@ -233,7 +235,7 @@ uint32_t lm_page_set_gain(struct lm_page *p, int32_t gain_db)
     if (!fx_is_within_i32(gain_db, -LM_GAIN_MAX_DB, LM_GAIN_MAX_DB)) {
         return 0;
     }
-    p->gain_db = (int16_t)gain_db;
+    p->gain_db = (int8_t)gain_db;
     return LM_EFFECT_TONE;
 }
 
@@ -273,6 +275,64 @@ void lm_page_note_tilt(struct lm_page *p, int32_t tilt)
     if (!p->is_tilt_manual) {
         p->tilt_tenths = (int16_t)lm_deg_tenths_of_bam(tilt);
     }
+}
+
+/* ---- the page as bytes ---- */
+
+enum { FIRST_BYTE = offsetof(struct lm_page, format) };
+
+_Static_assert(offsetof(struct lm_page, palette) == FIRST_BYTE + LM_PAGE_SHARED_BYTES &&
+                   offsetof(struct lm_page, is_frozen) == FIRST_BYTE + LM_PAGE_BYTES - 1 &&
+                   offsetof(struct lm_page, picture) == FIRST_BYTE + 1,
+               "the bytes stand together");
+
+void lm_page_bytes(const struct lm_page *p, uint8_t byte[LM_PAGE_BYTES])
+{
+    memcpy(byte, (const uint8_t *)p + FIRST_BYTE, LM_PAGE_BYTES);
+}
+
+bool lm_page_bytes_are_sound(const struct lm_page *p, const uint8_t byte[LM_PAGE_BYTES])
+{
+    /* The most of each; a negative one is also the least. */
+    static const int8_t most[LM_PAGE_BYTES] = {LM_FORMATS - 1,
+                                               LM_PICTURES - 1,
+                                               LM_SECTOR_MODES - 1,
+                                               LM_FOVS - 1,
+                                               INT8_MAX,
+                                               LM_AZIMUTHS - 1,
+                                               1,
+                                               1,
+                                               1,
+                                               1,
+                                               1,
+                                               1,
+                                               1,
+                                               1,
+                                               -LM_GAIN_MAX_DB,
+                                               -LM_WINDOW_MAX_DB,
+                                               -LM_WINDOW_MAX_DB,
+                                               -LM_GAMMA_MAX,
+                                               LM_TINTS - 1,
+                                               1,
+                                               -LM_ROCKER_STEPS,
+                                               -LM_ROCKER_STEPS,
+                                               -LM_ROCKER_STEPS,
+                                               1};
+    for (uint32_t i = 0; i < LM_PAGE_BYTES; i++) {
+        const int32_t limit = most[i];
+        if (!fx_is_within_i32((int8_t)byte[i], fx_min_i32(limit, 0), (int32_t)fx_abs_u32(limit))) {
+            return false;
+        }
+    }
+    return byte[3] <= p->radar->mode[byte[2]].fov_last &&
+           byte[4] <= lm_radar_range_last(p->radar, byte[2], byte[3]);
+}
+
+void lm_page_take(struct lm_page *p, const uint8_t byte[LM_PAGE_BYTES], uint32_t count)
+{
+    const uint8_t picture = p->picture;
+    memcpy((uint8_t *)p + FIRST_BYTE, byte, count);
+    p->picture = picture;
 }
 
 /* ---- presses, labels and values of keys ---- */

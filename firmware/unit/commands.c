@@ -2,6 +2,7 @@
 
 #include "fx/sat.h"
 #include "ownship.h"
+#include "swap.h"
 #include "tracking.h"
 
 enum { CONTROLS_A_STEP = 8, UNABLE_SHOWN_US = 2000000 };
@@ -30,6 +31,11 @@ static enum lm_refusal show_unable(struct lm_unit *u, enum lm_refusal reason, ui
     u->unable.until_us = reason == LM_REFUSED_NOT ? 0 : now_us + UNABLE_SHOWN_US;
     u->unable.reason = reason;
     return reason;
+}
+
+void lm_refuse(struct lm_unit *u, enum lm_refusal reason, uint64_t now_us)
+{
+    note_refusal(u, show_unable(u, reason, now_us));
 }
 
 /* Start a patch, or show why not. */
@@ -92,7 +98,9 @@ void lm_apply_effects(struct lm_unit *u, uint32_t effects, uint64_t now_us)
     if (effects & LM_EFFECT_CURSOR_HOME) {
         u->cursor.is_placed = false; /* the next step places it */
     }
-    u->count.swaps += (effects & LM_EFFECT_SWAP) != 0;
+    if (effects & LM_EFFECT_SWAP) {
+        lm_swap_ask(u, now_us);
+    }
     if (effects & (LM_EFFECT_TRACK | LM_EFFECT_RANGING)) {
         apply_track_key(u, effects, now_us);
     }

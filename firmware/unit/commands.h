@@ -11,4 +11,7 @@ void lm_apply_effects(struct lm_unit *u, uint32_t effects, uint64_t now_us);
  * u->count.commands_refused. */
 void lm_take_controls(struct lm_unit *u, uint64_t now_us);
 
+/* Show and count that something cannot be done. */
+void lm_refuse(struct lm_unit *u, enum lm_refusal reason, uint64_t now_us);
+
 #endif

@@ -6,11 +6,12 @@
 #include "lm/canas_report.h"
 #include "lm/units.h"
 #include "ownship.h"
+#include "swap.h"
 #include "tracking.h"
 
 enum { RANGE_MOST_M = 400000 }; /* of lm_slant_of_ground_m_q8 */
 
-_Static_assert(LM_REFUSED_MAP == 5 && LM_REFUSED_DWELL == 13 && LM_REFUSALS == 14 &&
+_Static_assert(LM_REFUSED_MAP == 5 && LM_REFUSED_DWELL == 13 && LM_REFUSED_SWAP == 14 &&
                    LM_FORMAT_TEST == 4 && LM_FOV_DBS2 == 3 && LM_SECTOR_SEA == 2,
                "docs/bus.md tells others these numbers");
 
@@ -169,5 +170,6 @@ void lm_send_reports(struct lm_unit *u, uint64_t now_us)
         lm_canas_report_begin(&u->report, sets, &values, now_us);
     }
     lm_canas_control_send(&u->control_bus, u->board->can); /* what happened, before what is */
+    lm_swap_send(u, now_us);
     lm_canas_report_send(&u->report, u->board->can);
 }

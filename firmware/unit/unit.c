@@ -10,6 +10,7 @@
 #include "pacing.h"
 #include "present.h"
 #include "report.h"
+#include "swap.h"
 #include "tracking.h"
 
 /* Priorities of a further table's rows: four tables share the 256 of an event. */
@@ -69,6 +70,7 @@ int lm_unit_init(struct lm_unit *u, const struct lm_board *board)
     const uint8_t node = bus->framing == LM_BUS_CANAEROSPACE ? board->bus_node : 0;
     lm_canas_service_init(&u->service, node, board->hardware_revision, LM_VERSION_NUMBER);
     lm_canas_report_init(&u->report, board->tells_reports ? node : 0);
+    lm_swap_init(u, node);
     lm_canas_control_init(&u->control_bus, board->tells_reports ? node : 0,
                           board->obeys_controls && bus->framing == LM_BUS_CANAEROSPACE);
     lm_unit_weather_init(&u->weather);
@@ -118,6 +120,7 @@ static void take_frame(struct lm_unit *u, uint8_t interface, const struct lm_can
         lm_canas_service_take(&u->service, frame);
         if (frame->length > 0 && lm_bus_is_heard(u->board->bus_nodes, frame->data[0])) {
             lm_canas_control_take(&u->control_bus, frame);
+            lm_swap_take(u, frame);
         }
     }
     take_by_more(u, interface, frame);

@@ -2,6 +2,8 @@
 
 #include <stddef.h>
 
+#include "lm/bus_filters.h"
+#include "lm/canas.h"
 #include "lm/canas_control.h"
 
 static const struct {
@@ -37,4 +39,13 @@ struct lm_report_row bus_control_row(int item)
                                   .type = lm_control_type((enum lm_control_item)item),
                                   .unit = items[item].unit,
                                   .per_unit = items[item].per_unit};
+}
+
+struct lm_report_row bus_swap_row(void)
+{
+    return (struct lm_report_row){.name = "swap",
+                                  .id = LM_BUS_SWAP_ID,
+                                  .type = LM_CANAS_UCHAR4,
+                                  .unit = "first second third fourth",
+                                  .per_unit = 1};
 }

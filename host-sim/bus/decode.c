@@ -7,6 +7,7 @@
 #include "hs/progress.h"
 #include "hs/report.h"
 #include "lm/bus.h"
+#include "lm/bus_filters.h"
 #include "lm/canas_control.h"
 
 #include <errno.h>
@@ -166,10 +167,11 @@ static bool find_report(const struct lm_can_frame *f, struct lm_report_row *row)
     }
     const bool is_control =
         !f->is_extended && f->id >= LM_CONTROL_ID && f->id < LM_CONTROL_ID + LM_CONTROL_ITEMS;
-    if (is_control) {
-        *row = bus_control_row((int)(f->id - LM_CONTROL_ID));
+    const bool is_swap = !f->is_extended && f->id == LM_BUS_SWAP_ID;
+    if (is_control || is_swap) {
+        *row = is_swap ? bus_swap_row() : bus_control_row((int)(f->id - LM_CONTROL_ID));
     }
-    return is_control;
+    return is_control || is_swap;
 }
 
 /* What a frame of the display says, when it is well formed and has a value. */

@@ -153,9 +153,9 @@ void bus_print_controls(FILE *out)
     fprintf(out,
             "| id | hex | item | type | unit or bytes | counts in a unit |\n"
             "|---|---|---|---|---|---|\n");
-    hs_report_put("controls", (int)LM_CONTROL_ITEMS);
-    for (int i = 0; i < LM_CONTROL_ITEMS; i++) {
-        const struct lm_report_row row = bus_control_row(i);
+    hs_report_put("controls", LM_CONTROL_ITEMS + 1);
+    for (int i = 0; i <= LM_CONTROL_ITEMS; i++) {
+        const struct lm_report_row row = i < LM_CONTROL_ITEMS ? bus_control_row(i) : bus_swap_row();
         fprintf(out, "| %u | %03X | %s | %s | %s | %d |\n", row.id, row.id, row.name,
                 lm_canas_types[row.type].name, row.unit, row.per_unit);
     }
@@ -333,6 +333,8 @@ static void print_service_messages(FILE *out)
         const struct lm_report_row row = bus_control_row(i);
         print_report_message(out, &row, i, i == LM_CONTROL_ITEM_STEP ? "landmass" : "Vector__XXX");
     }
+    const struct lm_report_row swap = bus_swap_row();
+    print_report_message(out, &swap, 0, "landmass");
 }
 
 static bool are_one_frame(const struct lm_bus_row *a, const struct lm_bus_row *b)

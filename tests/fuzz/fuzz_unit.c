@@ -13,7 +13,15 @@
 
 const uint32_t fuzz_mutations = 400;
 
-enum { SIDE = 256, POOL_TILES = 64, QUEUE = 32, STEPS_MAX = 300, PLACES = 4 };
+enum {
+    SIDE = 256,
+    POOL_TILES = 64,
+    QUEUE = 32,
+    STEPS_MAX = 300,
+    PLACES = 4,
+    NODE = 20,
+    PARTNER = 21
+};
 
 struct world {
     struct tiny_image image; /* a copy, to be damaged */
@@ -171,6 +179,25 @@ static void queue_exercise(struct world *w, struct fuzz_supply *s)
     }
 }
 
+/* What a partner says in an exchange of pages: a page that may be sound, or an act. */
+static void queue_swap(struct world *w, struct fuzz_supply *s)
+{
+    const uint8_t act = fuzz_u8(s), code = w->unit.swap.exchange;
+    const uint32_t first = act & 1 ? LM_SWAP_OF_ANSWER : 0;
+    struct lm_can_frame f = bus_frame(LM_SWAP_ID, LM_CANAS_UCHAR4, code, 0, w->now_us);
+    f.data[0] = PARTNER;
+    f.length = 8;
+    for (uint32_t i = 0; i < LM_SWAP_PARTS && (act & 2) != 0; i++) {
+        const uint32_t bytes = fuzz_u32(s) & (act & 4 ? UINT32_MAX : 0x01010101);
+        f.data[2] = (uint8_t)(first + i);
+        memcpy(f.data + 4, &bytes, sizeof bytes);
+        queue_frame(w, &f);
+    }
+    f.data[2] = (uint8_t)(LM_SWAP_ASK + (act >> 3) % 5);
+    f.data[4] = NODE;
+    queue_frame(w, &f);
+}
+
 /* One malfunction of any kind, or the end of all. */
 static void queue_malfunction(struct world *w, struct fuzz_supply *s)
 {
@@ -321,7 +348,9 @@ static void act(struct world *w, struct fuzz_supply *s)
         queue_weather(w, s, op >> 4 & 1);
         break;
     case 14:
-        if (op >> 4 & 1) {
+        if (op >> 5 & 1) {
+            queue_swap(w, s);
+        } else if (op >> 4 & 1) {
             queue_malfunction(w, s);
         } else {
             queue_exercise(w, s);
@@ -361,6 +390,8 @@ static void fly(struct world *w, struct fuzz_supply *s)
     FUZZ_ASSERT(parts.glass && parts.plane && parts.tile_pool);
     memory_board_open(&w->board, w->image.bytes, w->image.size, &parts);
     w->board.lent.flash_poll_limit = 20;
+    w->board.lent.bus_node = NODE;
+    w->board.lent.bus_partner = PARTNER;
     w->board.lent.radar = NULL; /* the image's, which may be hostile */
     if (lm_unit_init(&w->unit, &w->board.lent) == LM_OK) {
         while (s->left > 0 && w->steps < STEPS_MAX) {

@@ -801,6 +801,7 @@ static int run(struct sim *s)
     struct bench_bus bus = {.can = &s->can,
                             .nodes = o->has_nodes ? o->nodes : NULL,
                             .node = o->node,
+                            .partner = o->partner,
                             .is_heading_magnetic = o->heading == 1,
                             .tells_reports = o->tells_reports,
                             .obeys_controls = o->obeys_controls};

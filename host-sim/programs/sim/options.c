@@ -105,7 +105,7 @@ static const char *take_profile(void *context, const char *name)
 
 /* Numbers as the table of options keeps them. */
 struct raw {
-    long node, every, seed;
+    long node, partner, every, seed;
     double start, seconds, from, speed;
 };
 
@@ -144,6 +144,9 @@ static bool read_table(struct options *o, struct raw *raw, int argc, char **argv
          false},
         {"obey-controls", HS_FLAG, &o->obeys_controls, 0, 0, NULL,
          "obey keys, knobs and commands that come as frames of the bus (docs/bus.md)", false},
+        {"partner", HS_INTEGER, &raw->partner, 0, 255, "N",
+         "SWAP exchanges the page with the display that is this node (docs/bus.md); 0: with none",
+         false},
         {"bus-out", HS_OUTPUT, &o->bus_out, 0, 0, "FILE.log",
          "write the frames that the unit sends, as candump -L does, in flight time", false},
         {"record", HS_OUTPUT, &o->record, 0, 0, "FILE.log",
@@ -226,6 +229,10 @@ static bool check(const struct options *o, int *exit_code)
             hs_options_wrong(&usage, "--reports", "needs the unit's number on the bus, --node");
         return false;
     }
+    if (o->partner != 0 && (o->node == 0 || o->node == o->partner)) {
+        *exit_code = hs_options_wrong(&usage, "--partner", "needs a number of its own, --node");
+        return false;
+    }
     if (o->start_s > 0 && !o->bus_log) {
         *exit_code = hs_options_wrong(&usage, "--start", "needs the log of --bus");
         return false;
@@ -257,6 +264,7 @@ bool options_read(struct options *o, int argc, char **argv, int *exit_code)
         return false;
     }
     o->node = (uint8_t)raw.node;
+    o->partner = (uint8_t)raw.partner;
     o->every = (uint32_t)raw.every;
     o->seed = (uint32_t)raw.seed;
     o->start_s = raw.start;

@@ -31,7 +31,8 @@ struct options {
     const char *table_2;
     bool has_nodes; /* nodes.. are those that are heard */
     uint8_t nodes[LM_BUS_NODE_BYTES];
-    uint8_t node; /* on the bus; 0: it only listens */
+    uint8_t node;    /* on the bus; 0: it only listens */
+    uint8_t partner; /* the other display's node; 0: there is none */
     struct lm_glass_options glass;
 };
 

@@ -8,13 +8,17 @@
 #include "lm/canas_control.h"
 #include "lm/port.h"
 
+/* What two displays tell each other (lm/swap.h). */
+enum { LM_BUS_SWAP_ID = 1570 };
+
 /* Most filters of any profile. It is below the 512 of a Linux socket. */
-enum { LM_BUS_FILTERS_MAX = 2 * LM_BUS_ROWS_MAX + LM_CONTROL_ITEMS };
+enum { LM_BUS_FILTERS_MAX = 2 * LM_BUS_ROWS_MAX + LM_CONTROL_ITEMS + 1 };
 
 /* Write the filters of a profile, none of them twice, and return how many there are:
  *
  * - CANaerospace: for each row its 11-bit identifier, and its 29-bit one on any redundancy channel
- *   below LM_BUS_CHANNELS; requests of node services, and control frames (lm/canas_control.h).
+ *   below LM_BUS_CHANNELS; requests of node services, control frames (lm/canas_control.h), and
+ *   those of a partner, LM_BUS_SWAP_ID.
  * - packed: for each row its identifier and mask.
  *
  * All frames that the decoder takes pass. Two kinds of frames pass and are not taken: 29-bit

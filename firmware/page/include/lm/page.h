@@ -50,32 +50,33 @@ enum {
  * change it. */
 struct lm_page {
     const struct lm_radar *radar; /* borrowed; keeps its contract (lm/radar_check.h) */
-    uint8_t format;               /* enum lm_format */
-    uint8_t picture;              /* enum lm_picture_kind */
-    uint8_t mode;                 /* of the sector: enum lm_sector_mode */
-    uint8_t fov;                  /* of the sector: enum lm_fov, one that the mode has */
-    uint8_t range_index;          /* row of the radar table's scales, 0..lm_page_range_last */
-    uint8_t azimuth_index;        /* index of the radar table's sectors, 0..LM_AZIMUTHS - 1 */
-    uint32_t cell_mm;             /* of the patch: the next one's, if this one cannot have it */
-    bool is_baro;                 /* the barometric height is used, if there is one */
-    bool is_plan;                 /* a patch is shown as a plan, without layover */
-    bool is_tilt_manual;          /* the operator, not the radar, sets the tilt */
-    bool is_pencil;               /* the beam is not spoiled into a fan */
-    int16_t tilt_tenths;          /* of the beam's axis, tenths of a degree up */
-    bool is_auto_range;           /* the scale follows the cursor */
-    bool is_override;             /* the transmitter is silent */
-    bool is_frozen;               /* the picture is held, and the aircraft moves over it */
-    bool is_snowplow;             /* the cursor stays ahead of the aircraft */
-    bool is_decluttered;          /* the labels in `hidden` are not shown on the radar page */
-    uint8_t track;                /* a track is on: its kind, 1.. (lm/track.h); 0: none */
-    uint32_t hidden;              /* bit n - 1: declutter takes OSB n's label away */
-
-    int16_t gain_db;     /* added to the picture's level, -LM_GAIN_MAX_DB..LM_GAIN_MAX_DB */
-    int16_t knob;        /* deflection of the knob, -LM_FULL_DEFLECTION..LM_FULL_DEFLECTION */
-    int8_t black_db;     /* added to the table's black, -LM_WINDOW_MAX_DB..LM_WINDOW_MAX_DB */
-    int8_t white_db;     /* added to the table's white, -LM_WINDOW_MAX_DB..LM_WINDOW_MAX_DB */
-    int8_t gamma_tenths; /* added to the table's gamma, -LM_GAMMA_MAX..LM_GAMMA_MAX */
+    /* Bytes of lm_page_bytes, in this order, up to the freeze. */
+    uint8_t format;        /* enum lm_format */
+    uint8_t picture;       /* enum lm_picture_kind */
+    uint8_t mode;          /* of the sector: enum lm_sector_mode */
+    uint8_t fov;           /* of the sector: enum lm_fov, one that the mode has */
+    uint8_t range_index;   /* row of the radar table's scales, 0..lm_page_range_last */
+    uint8_t azimuth_index; /* index of the radar table's sectors, 0..LM_AZIMUTHS - 1 */
+    bool is_baro;          /* the barometric height is used, if there is one */
+    bool is_plan;          /* a patch is shown as a plan, without layover */
+    bool is_tilt_manual;   /* the operator, not the radar, sets the tilt */
+    bool is_pencil;        /* the beam is not spoiled into a fan */
+    bool is_auto_range;    /* the scale follows the cursor */
+    bool is_override;      /* the transmitter is silent */
+    bool is_snowplow;      /* the cursor stays ahead of the aircraft */
+    bool is_decluttered;   /* the labels in `hidden` are not shown on the radar page */
+    int8_t gain_db;        /* added to the picture's level, -LM_GAIN_MAX_DB..LM_GAIN_MAX_DB */
+    int8_t black_db;       /* added to the table's black, -LM_WINDOW_MAX_DB..LM_WINDOW_MAX_DB */
+    int8_t white_db;       /* added to the table's white, -LM_WINDOW_MAX_DB..LM_WINDOW_MAX_DB */
+    int8_t gamma_tenths;   /* added to the table's gamma, -LM_GAMMA_MAX..LM_GAMMA_MAX */
     struct lm_palette_config palette;
+    bool is_frozen; /* the picture is held, and the aircraft moves over it */
+
+    uint8_t track;       /* a track is on: its kind, 1.. (lm/track.h); 0: none */
+    int16_t tilt_tenths; /* of the beam's axis, tenths of a degree up */
+    int16_t knob;        /* deflection of the knob, -LM_FULL_DEFLECTION..LM_FULL_DEFLECTION */
+    uint32_t cell_mm;    /* of the patch: the next one's, if this one cannot have it */
+    uint32_t hidden;     /* bit n - 1: declutter takes OSB n's label away */
 };
 
 /* Set the page as after power-up: the first mode, NORM, the radar table's initial scale and first
@@ -125,6 +126,23 @@ void lm_page_note_track(struct lm_page *p, uint8_t kind);
 
 /* Set the tilt, signed BAM, that the radar chose. Ignored while the operator sets the tilt. */
 void lm_page_note_tilt(struct lm_page *p, int32_t tilt);
+
+/* The selection as bytes, for another display or for after a restart. */
+enum {
+    LM_PAGE_SHARED_BYTES = 18, /* what a page is, wherever it is shown */
+    LM_PAGE_BYTES = 24         /* and the colours, which belong to the glass, and the freeze */
+};
+
+/* Write the bytes; true and false are 1 and 0, negative numbers two's complement. */
+void lm_page_bytes(const struct lm_page *p, uint8_t byte[LM_PAGE_BYTES]);
+
+/* True if each byte is within the range that stands beside its member, and this radar has the mode
+ * with the field of view and the scale. */
+bool lm_page_bytes_are_sound(const struct lm_page *p, const uint8_t byte[LM_PAGE_BYTES]);
+
+/* Take the first `count` of sound bytes, all but the kind of the picture: that begins by
+ * lm_picture_start. */
+void lm_page_take(struct lm_page *p, const uint8_t byte[LM_PAGE_BYTES], uint32_t count);
 
 /* Label: text beside a key, one or two lines of at most five characters. */
 struct lm_label {

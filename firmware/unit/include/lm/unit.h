@@ -20,6 +20,7 @@
  *     unit.c -+-> follow.c ---> commands.c -+
  *             +-> pacing.c -----------------+-> picture.c -> picture_sector.c, picture_patch.c
  *             +-> tracking.c
+ *             +-> swap.c -----> settings.c
  *             +-> flags.c
  *             +-> report.c
  *             +-> present.c
@@ -45,6 +46,7 @@
 #include "lm/nav.h"
 #include "lm/page.h"
 #include "lm/picture.h"
+#include "lm/swap.h"
 #include "lm/track.h"
 #include "lm/unit_map.h"
 #include "lm/unit_weather.h"
@@ -72,6 +74,8 @@ struct lm_board {
     struct lm_board_table tables[LM_BUS_TABLES_MORE];
     const uint8_t *bus_nodes;  /* the nodes that are heard: lm_bus_hear_only; NULL: all */
     uint8_t bus_node;          /* the unit's CANaerospace node, 1..255; 0: no node services */
+    uint8_t bus_partner;       /* the node that SWAP exchanges the page with (lm/swap.h);
+                                  0: there is none */
     bool is_heading_magnetic;  /* the bus's LM_BUS_HEADING is from magnetic north */
     bool tells_reports;        /* it also tells lm/canas_report.h and lm/canas_control.h; without
                                   a node it does not */
@@ -115,6 +119,7 @@ struct lm_unit {
     struct lm_canas_service service;
     struct lm_canas_report report;
     struct lm_canas_control control_bus;
+    struct lm_swap swap;
     uint64_t last_bus_us;   /* arrival of the last frame that was no error report */
     uint64_t last_bus_2_us; /* the same of can_2 */
     struct {
@@ -174,8 +179,8 @@ struct lm_unit {
         uint32_t display_busy;     /* no surface was free when a frame was due */
         uint32_t frames_hurried;   /* frames completed beyond glass_step_px, after LM_FRAME_STEPS */
         uint32_t commands_refused; /* controls with a value out of range, or not possible now */
-        uint32_t swaps; /* SWAP presses: a board with two displays exchanges their pages */
-    } count;            /* only ever grow */
+        uint32_t swaps;            /* pages exchanged with the partner */
+    } count;                       /* only ever grow */
 };
 
 /* Put the unit in its first state: ground map, +-60 degrees, 40 nm. Reads the image's tables and
@@ -198,8 +203,8 @@ int lm_unit_init(struct lm_unit *u, const struct lm_board *board);
  * - move view and cursor, and the range scale if it follows the cursor;
  * - start and finish reads of tiles, without waiting;
  * - draw at most LM_STEP_LINES lines;
- * - tell the other avionics what is due, at most LM_CONTROL_FRAMES_A_STEP and
- *   LM_REPORT_FRAMES_A_STEP frames;
+ * - tell the other avionics what is due, at most LM_CONTROL_FRAMES_A_STEP,
+ *   LM_SWAP_FRAMES_A_STEP and LM_REPORT_FRAMES_A_STEP frames;
  * - compose the glass, at most board->glass_step_px pixels, and show it when it is complete, every
  *   LM_FRAME_US.
  * Call at least every 4 ms for a smooth sweep. Never waits and never fails: errors show in u->flags

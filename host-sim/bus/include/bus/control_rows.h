@@ -8,4 +8,7 @@
 /* The row of an item, 0..LM_CONTROL_ITEMS - 1. Its set means nothing. */
 struct lm_report_row bus_control_row(int item);
 
+/* The row of what two displays tell each other when SWAP is pressed. */
+struct lm_report_row bus_swap_row(void);
+
 #endif

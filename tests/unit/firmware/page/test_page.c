@@ -527,15 +527,17 @@ TEST(osb_12_to_14_are_the_direct_access_to_the_formats)
     free_rig(r);
 }
 
-TEST(osb_15_asks_the_board_to_swap)
+/* With another display: test_swap. */
+TEST(osb_15_without_another_display_is_refused)
 {
     struct rig *r = fly_rig();
     press(r, 15);
-    assert_int_equal(r->unit.count.swaps, 1);
+    assert_int_equal(r->unit.refusal, LM_REFUSED_SWAP);
     press(r, 12);
     press(r, 15);
-    assert_int_equal(r->unit.count.swaps, 2);
-    assert_true(says(r, "SWAPS    2"));
+    assert_int_equal(r->unit.count.commands_refused, 2);
+    assert_int_equal(r->unit.page.format, LM_FORMAT_BIT);
+    assert_true(says(r, "SWAPS    0"));
     free_rig(r);
 }
 
