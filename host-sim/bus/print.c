@@ -334,7 +334,7 @@ static void print_service_messages(FILE *out)
         print_report_message(out, &row, i, i == LM_CONTROL_ITEM_STEP ? "landmass" : "Vector__XXX");
     }
     const struct lm_report_row swap = bus_swap_row();
-    print_report_message(out, &swap, 0, "landmass");
+    print_report_message(out, &swap, 0, "Vector__XXX"); /* it tells and hears them */
 }
 
 static bool are_one_frame(const struct lm_bus_row *a, const struct lm_bus_row *b)
