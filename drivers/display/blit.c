@@ -133,11 +133,11 @@ static void copy_rectangle(const struct copy *c, const struct lm_rectangle *r)
     }
 }
 
-void drv_blit(const struct drv_target *to, const struct lm_surface *from, enum drv_turn turn,
-              const struct lm_damage *changed)
+static struct copy copy_of(const struct drv_target *to, const struct lm_surface *from,
+                           enum drv_turn turn)
 {
     const bool is_upright = turn == DRV_TURN_0 || turn == DRV_TURN_180;
-    const struct copy c = {
+    return (struct copy){
         .to = to,
         .from = from,
         .turn = turn,
@@ -146,6 +146,12 @@ void drv_blit(const struct drv_target *to, const struct lm_surface *from, enum d
         .y = centre(is_upright ? from->height_px : from->width_px, to->height_px),
         .walk = walk_of(from, turn),
     };
+}
+
+void drv_blit(const struct drv_target *to, const struct lm_surface *from, enum drv_turn turn,
+              const struct lm_damage *changed)
+{
+    const struct copy c = copy_of(to, from, turn);
     const struct lm_rectangle whole = {0, 0, from->width_px, from->height_px};
     if (changed == NULL) {
         copy_rectangle(&c, &whole);
@@ -156,6 +162,47 @@ void drv_blit(const struct drv_target *to, const struct lm_surface *from, enum d
     while (lm_damage_next(changed, &walk, &r)) {
         copy_rectangle(&c, &r);
     }
+}
+
+/* What a rectangle of the picture becomes on the target; empty if it is cut off. */
+static struct lm_rectangle target_of(const struct copy *c, const struct lm_rectangle *r)
+{
+    const struct lm_rectangle there = turned(c, r);
+    const struct span x = part_of(&c->x, there.left, there.right);
+    const struct span y = part_of(&c->y, there.top, there.bottom);
+    return (struct lm_rectangle){(int32_t)x.target, (int32_t)y.target,
+                                 (int32_t)(x.target + x.count), (int32_t)(y.target + y.count)};
+}
+
+static void widen(struct lm_rectangle *part, const struct lm_rectangle *by)
+{
+    part->left = fx_min_i32(part->left, by->left);
+    part->top = fx_min_i32(part->top, by->top);
+    part->right = fx_max_i32(part->right, by->right);
+    part->bottom = fx_max_i32(part->bottom, by->bottom);
+}
+
+uint32_t drv_blit_parts(const struct drv_target *to, const struct lm_surface *from,
+                        enum drv_turn turn, const struct lm_damage *changed,
+                        struct lm_rectangle *part, uint32_t most)
+{
+    const struct copy c = copy_of(to, from, turn);
+    const struct lm_rectangle whole = {0, 0, from->width_px, from->height_px};
+    struct lm_damage_walk walk = lm_damage_walk(&whole);
+    struct lm_rectangle r;
+    uint32_t count = 0;
+    while (lm_damage_next(changed, &walk, &r)) {
+        const struct lm_rectangle there = target_of(&c, &r);
+        if (there.left >= there.right || there.top >= there.bottom) {
+            continue;
+        }
+        if (count < most) {
+            part[count++] = there;
+        } else {
+            widen(&part[most - 1], &there);
+        }
+    }
+    return count;
 }
 
 void drv_blit_clear(const struct drv_target *to)

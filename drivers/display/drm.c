@@ -135,6 +135,8 @@ static int light(struct drv_drm *d)
                     "%s: the mode of %s cannot be set: %s; does another program hold the screen?",
                     d->config.device, screen.name, strerror(errno));
     }
+    drm_screen_find_plane(d->fd, screen.crtc_id, &d->plane);
+    d->whole = DRV_DRM_BUFFERS;
     d->connector_id = screen.connector_id;
     d->crtc_id = screen.crtc_id;
     d->width_px = screen.mode.hdisplay;
@@ -195,14 +197,67 @@ void drv_drm_close(struct drv_drm *d)
     d->state = DRV_DRM_DARK;
 }
 
-/* Ask for the flip that is due. */
-static int flip(struct drv_drm *d, uint64_t now_us)
+static int flip_plain(const struct drv_drm *d)
 {
     struct drm_mode_crtc_page_flip ask = {.crtc_id = d->crtc_id,
                                           .fb_id = d->buffer[d->front ^ 1].framebuffer,
                                           .flags = DRM_MODE_PAGE_FLIP_EVENT,
                                           .user_data = d->sequence + 1};
-    if (drm_call(d->fd, DRM_IOCTL_MODE_PAGE_FLIP, &ask) == 0) {
+    return drm_call(d->fd, DRM_IOCTL_MODE_PAGE_FLIP, &ask);
+}
+
+_Static_assert(sizeof(struct lm_rectangle) == sizeof(struct drm_mode_rect),
+               "left, top, right and bottom are x1, y1, x2 and y2");
+
+/* The kernel keeps the clips for as long as it needs them. */
+static int flip_clipped(const struct drv_drm *d)
+{
+    struct drm_mode_create_blob blob = {.data = (uint64_t)(uintptr_t)d->clip,
+                                        .length = d->clips * (uint32_t)sizeof *d->clip};
+    if (drm_call(d->fd, DRM_IOCTL_MODE_CREATEPROPBLOB, &blob) != 0) {
+        return -1;
+    }
+    uint32_t plane = d->plane.id, count = 2;
+    uint32_t property[2] = {d->plane.picture, d->plane.clips};
+    uint64_t value[2] = {d->buffer[d->front ^ 1].framebuffer, blob.blob_id};
+    struct drm_mode_atomic ask = {.flags = DRM_MODE_PAGE_FLIP_EVENT | DRM_MODE_ATOMIC_NONBLOCK,
+                                  .count_objs = 1,
+                                  .objs_ptr = (uint64_t)(uintptr_t)&plane,
+                                  .count_props_ptr = (uint64_t)(uintptr_t)&count,
+                                  .props_ptr = (uint64_t)(uintptr_t)property,
+                                  .prop_values_ptr = (uint64_t)(uintptr_t)value,
+                                  .user_data = d->sequence + 1};
+    const int status = drm_call(d->fd, DRM_IOCTL_MODE_ATOMIC, &ask);
+    const int cause = errno;
+    struct drm_mode_destroy_blob done = {.blob_id = blob.blob_id};
+    drm_call(d->fd, DRM_IOCTL_MODE_DESTROYPROPBLOB, &done);
+    errno = cause;
+    return status;
+}
+
+/* Ask the kernel for a flip, with clips where it takes them. A card that refuses clips is asked
+ * without from then on. */
+static int ask_flip(struct drv_drm *d)
+{
+    if (d->plane.id == 0 || d->clips == 0 || d->whole != 0) {
+        return flip_plain(d);
+    }
+    if (flip_clipped(d) == 0) {
+        d->count.clipped++;
+        return 0;
+    }
+    if (errno == EBUSY) {
+        return -1;
+    }
+    d->plane = (struct drv_drm_plane){0};
+    return flip_plain(d);
+}
+
+/* Ask for the flip that is due. */
+static int flip(struct drv_drm *d, uint64_t now_us)
+{
+    if (ask_flip(d) == 0) {
+        d->whole = (uint8_t)(d->whole - (d->whole != 0));
         d->sequence++;
         d->state = DRV_DRM_FLIPPING;
         d->since_us = now_us;
@@ -294,6 +349,8 @@ int drv_drm_present(struct drv_drm *d, const struct lm_surface *picture,
         return LM_BUSY;
     }
     drv_blit(&back->target, picture, d->config.turn, &back->lacks);
+    d->clips = drv_blit_parts(&back->target, picture, d->config.turn, &back->lacks, d->clip,
+                              DRV_DRM_CLIPS);
     lm_damage_clear(&back->lacks);
     d->state = DRV_DRM_DUE;
     d->since_us = now_us;

@@ -6,7 +6,8 @@
 #include <sys/ioctl.h>
 
 /* More than any card has; what is beyond is not looked at. */
-enum { OBJECTS_MAX = 32, MODES_MAX = 128, IS_CONNECTED = 1, CALLS_MAX = 100 };
+enum { OBJECTS_MAX = 32, PROPERTIES_MAX = 64, MODES_MAX = 128, CALLS_MAX = 100 };
+enum { IS_CONNECTED = 1, IS_PRIMARY = 1 };
 
 struct connector {
     struct drm_mode_get_connector is;
@@ -163,4 +164,61 @@ const char *drm_screen_find(int fd, const struct drv_drm_config *config, struct 
         cause = why;
     }
     return cause;
+}
+
+/* The number of a plane's property, and its value; 0 if there is none of that name. */
+static uint32_t find_property(int fd, const struct drm_mode_obj_get_properties *of,
+                              const char *name, uint64_t *value)
+{
+    const uint32_t *ids = (const uint32_t *)(uintptr_t)of->props_ptr;
+    const uint64_t *values = (const uint64_t *)(uintptr_t)of->prop_values_ptr;
+    for (uint32_t i = 0; i < at_most(of->count_props, PROPERTIES_MAX); i++) {
+        struct drm_mode_get_property p = {.prop_id = ids[i]};
+        if (drm_call(fd, DRM_IOCTL_MODE_GETPROPERTY, &p) == 0 &&
+            strncmp(p.name, name, sizeof p.name) == 0) {
+            *value = values[i];
+            return ids[i];
+        }
+    }
+    return 0;
+}
+
+/* True if that plane shows the controller's picture and takes clips. */
+static bool try_plane(int fd, uint32_t crtc_id, uint32_t id, struct drv_drm_plane *plane)
+{
+    uint32_t ids[PROPERTIES_MAX];
+    uint64_t values[PROPERTIES_MAX], type = 0, other;
+    struct drm_mode_get_plane p = {.plane_id = id};
+    struct drm_mode_obj_get_properties of = {.props_ptr = address(ids),
+                                             .prop_values_ptr = address(values),
+                                             .count_props = PROPERTIES_MAX,
+                                             .obj_id = id,
+                                             .obj_type = DRM_MODE_OBJECT_PLANE};
+    if (drm_call(fd, DRM_IOCTL_MODE_GETPLANE, &p) != 0 || p.crtc_id != crtc_id ||
+        drm_call(fd, DRM_IOCTL_MODE_OBJ_GETPROPERTIES, &of) != 0 ||
+        of.count_props > PROPERTIES_MAX || find_property(fd, &of, "type", &type) == 0 ||
+        type != IS_PRIMARY) {
+        return false;
+    }
+    *plane = (struct drv_drm_plane){id, find_property(fd, &of, "FB_ID", &other),
+                                    find_property(fd, &of, "FB_DAMAGE_CLIPS", &other)};
+    return plane->picture != 0 && plane->clips != 0;
+}
+
+void drm_screen_find_plane(int fd, uint32_t crtc_id, struct drv_drm_plane *plane)
+{
+    uint32_t planes[OBJECTS_MAX];
+    struct drm_set_client_cap ask = {.capability = DRM_CLIENT_CAP_ATOMIC, .value = 1};
+    struct drm_mode_get_plane_res card = {.plane_id_ptr = address(planes),
+                                          .count_planes = OBJECTS_MAX};
+    bool is_found = false;
+    if (drm_call(fd, DRM_IOCTL_SET_CLIENT_CAP, &ask) == 0 &&
+        drm_call(fd, DRM_IOCTL_MODE_GETPLANERESOURCES, &card) == 0) {
+        for (uint32_t i = 0; i < at_most(card.count_planes, OBJECTS_MAX) && !is_found; i++) {
+            is_found = try_plane(fd, crtc_id, planes[i], plane);
+        }
+    }
+    if (!is_found) {
+        *plane = (struct drv_drm_plane){0};
+    }
 }

@@ -23,6 +23,10 @@ struct drm_screen {
  * reads the screen's description: some 10 ms. NULL, or the cause why there is none. */
 const char *drm_screen_find(int fd, const struct drv_drm_config *config, struct drm_screen *screen);
 
+/* Find the plane that shows the controller's picture, if it takes clips of what changed: only then
+ * are its id and those of its properties not 0. `*plane` is set in any case. */
+void drm_screen_find_plane(int fd, uint32_t crtc_id, struct drv_drm_plane *plane);
+
 /* True if the connector still has a screen, as far as the kernel has noticed. Costs nothing. */
 bool drm_screen_is_there(int fd, uint32_t connector_id);
 

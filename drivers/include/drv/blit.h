@@ -31,6 +31,12 @@ struct drv_target {
 void drv_blit(const struct drv_target *to, const struct lm_surface *from, enum drv_turn turn,
               const struct lm_damage *changed);
 
+/* Find the parts of the target that drv_blit writes: at most `most` rectangles, 1 or more, the last
+ * of which holds all that are left. Returns how many there are. */
+uint32_t drv_blit_parts(const struct drv_target *to, const struct lm_surface *from,
+                        enum drv_turn turn, const struct lm_damage *changed,
+                        struct lm_rectangle *part, uint32_t most);
+
 /* Make the whole target black. */
 void drv_blit_clear(const struct drv_target *to);
 

@@ -10,6 +10,11 @@
  *   due       that buffer is drawn, and the kernel was busy: the flip is asked for again
  *   flipping  the kernel has the flip; no picture is taken until it reports it done
  *
+ * Where the card takes clips (FB_DAMAGE_CLIPS of an atomic driver), a flip tells which parts of the
+ * buffer were drawn since it was shown last. They hold what changed since the picture before, too:
+ * a card that keeps a copy of each buffer, and one that keeps a copy of the screen, both get all.
+ * The first flip of each buffer after the mode was set has no clips; nor has any after a refusal.
+ *
  * A flip that is not reported within DRV_DRM_FLIP_US is given up and counted. If the kernel stays
  * busy for that long, the mode is set again. So a lost report does not stop the picture. */
 #ifndef DRV_DRM_H
@@ -21,7 +26,12 @@
 
 #include "drv/blit.h"
 
-enum { DRV_DRM_FLIP_US = 200000, DRV_DRM_LOOK_US = 1000000, DRV_DRM_BUFFERS = 2 };
+enum {
+    DRV_DRM_FLIP_US = 200000,
+    DRV_DRM_LOOK_US = 1000000,
+    DRV_DRM_BUFFERS = 2,
+    DRV_DRM_CLIPS = 32
+};
 
 struct drv_drm_config {
     const char *device;           /* "/dev/dri/card0" */
@@ -40,6 +50,12 @@ struct drv_drm_buffer {
     struct lm_damage lacks; /* blocks that changed since the buffer was drawn */
 };
 
+/* The plane that shows the picture, and its properties, by the kernel's numbers; 0: it takes no
+ * clips. */
+struct drv_drm_plane {
+    uint32_t id, picture, clips;
+};
+
 struct drv_drm {
     int fd; /* -1: closed; else for poll(): readable when a flip was reported */
     struct drv_drm_config config;
@@ -48,6 +64,10 @@ struct drv_drm {
     char connector[32];           /* name of the connector in use */
     uint32_t connector_id, crtc_id;
     struct drv_drm_buffer buffer[DRV_DRM_BUFFERS];
+    struct drv_drm_plane plane;
+    struct lm_rectangle clip[DRV_DRM_CLIPS]; /* of the flip that is due: where its buffer changed */
+    uint32_t clips;
+    uint8_t whole;     /* so many flips are still to be made without clips */
     uint8_t front;     /* the buffer that is shown */
     uint32_t sequence; /* number of the last flip, to recognise late reports */
     uint64_t since_us; /* time since when the state is due or flipping */
@@ -61,6 +81,7 @@ struct drv_drm {
 
     struct {
         uint32_t flips;         /* flips that the kernel reported done */
+        uint32_t clipped;       /* flips asked for with clips */
         uint32_t busy;          /* flips that a busy kernel refused */
         uint32_t lost;          /* flips never reported */
         uint32_t late;          /* reports of flips that were given up */

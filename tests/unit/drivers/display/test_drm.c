@@ -88,16 +88,30 @@ static bool shows_picture(const struct rig *r)
     return true;
 }
 
-/* Change a few rectangles and present that. Pictures come while the last is on its way, and while
- * the screen is away; whenever one is taken and shown, it is whole. */
-TEST(what_changed_is_copied_into_both_buffers_and_nothing_is_forgotten)
+/* Whether cards that copy the clips show all of the shown buffer. */
+static bool show_copies(void)
 {
-    static struct rig r;
+    const uint32_t shown = fake_drm.handle_of_shown - 1;
+    const struct fake_drm_buffer *b = &fake_drm.buffer[shown];
+    const size_t row_words = b->size / b->height / sizeof *b->pixels;
+    for (size_t y = 0; y < b->height; y++) {
+        const uint32_t *row = b->pixels + y * row_words;
+        if (memcmp(row, fake_drm.screen + y * row_words, b->width * sizeof *row) != 0 ||
+            memcmp(row, fake_drm.copy[shown] + y * row_words, b->width * sizeof *row) != 0) {
+            return false;
+        }
+    }
+    return true;
+}
+
+/* Change a few rectangles and present that. Pictures come while the last is on its way, and while
+ * the screen is away; whenever one is taken and shown, it is whole. Returns how many were. */
+static uint32_t change_and_show(struct rig *r, uint32_t pictures)
+{
     struct hs_rng rng;
     hs_rng_seed(&rng, 21);
-    set_up(&r, &standard);
     uint32_t shown = 0;
-    for (uint32_t n = 0; n < 600; n++) {
+    for (uint32_t n = 0; n < pictures; n++) {
         struct lm_damage changed = {{0}};
         for (uint32_t k = hs_rng_below(&rng, 4); k > 0; k--) {
             const int32_t left = (int32_t)hs_rng_below(&rng, WIDTH),
@@ -106,29 +120,81 @@ TEST(what_changed_is_copied_into_both_buffers_and_nothing_is_forgotten)
                                               top + 1 + (int32_t)hs_rng_below(&rng, 9)};
             for (int32_t y = top; y < part.bottom && y < HEIGHT; y++) {
                 for (int32_t x = left; x < part.right && x < WIDTH; x++) {
-                    r.pixels[y * WIDTH + x] = n * 7919;
+                    r->pixels[y * WIDTH + x] = n * 7919;
                 }
             }
             lm_damage_mark(&changed, &part);
         }
         const bool is_away = n % 100 >= 40 && n % 100 < 60;
         fake_drm.has_screen = !is_away;
-        const int status = drv_drm_present(&r.drm, &r.picture, &changed, r.now_us);
-        const bool is_taken = status == LM_OK && r.drm.state != DRV_DRM_DARK;
+        const int status = drv_drm_present(&r->drm, &r->picture, &changed, r->now_us);
+        const bool is_taken = status == LM_OK && r->drm.state != DRV_DRM_DARK;
         if (hs_rng_below(&rng, 3) != 0) {
             fake_drm_blank();
-            wait_us(&r, TICK_US);
-            if (is_taken && r.drm.state == DRV_DRM_IDLE && !is_away) {
-                assert_true(shows_picture(&r));
+            wait_us(r, TICK_US);
+            if (is_taken && r->drm.state == DRV_DRM_IDLE && !is_away) {
+                assert_true(r->drm.config.turn != DRV_TURN_0 || shows_picture(r));
+                assert_true(show_copies());
                 shown++;
             }
         }
         if (n % 20 == 0) {
-            wait_us(&r, 1100000); /* a screen that comes or goes is noticed */
+            wait_us(r, 1100000); /* a screen that comes or goes is noticed */
         }
     }
+    return shown;
+}
+
+TEST(what_changed_is_copied_into_both_buffers_and_nothing_is_forgotten)
+{
+    static struct rig r;
+    set_up(&r, &standard);
+    const uint32_t shown = change_and_show(&r, 600);
     print_message("# %u pictures shown\n", shown);
-    assert_true(shown > 100 && r.drm.count.lit > 2);
+    assert_true(shown > 100 && r.drm.count.lit > 2 && r.drm.count.clipped == 0);
+    drv_drm_close(&r.drm);
+}
+
+/* Cards that copy what the clips say, and nothing else, show all of each picture. */
+TEST(clips_hold_all_that_changed_however_the_picture_is_turned)
+{
+    for (enum drv_turn turn = DRV_TURN_0; turn <= DRV_TURN_270; turn++) {
+        static struct rig r;
+        struct drv_drm_config config = standard;
+        config.turn = turn;
+        set_up(&r, &config);
+        fake_drm.takes_clips = true;
+        drv_drm_close(&r.drm);
+        assert_int_equal(drv_drm_open(&r.drm, &config, r.now_us), LM_OK);
+        assert_true(change_and_show(&r, 300) > 50);
+        assert_true(r.drm.count.clipped > 50);
+        assert_int_equal(fake_drm.live_blobs, 0);
+        const uint64_t a_flip_px = fake_drm.copied_px / r.drm.count.clipped;
+        print_message("# turn %d: %u flips with clips, %u pixels each\n", (int)turn,
+                      (unsigned)r.drm.count.clipped, (unsigned)a_flip_px);
+        assert_true(a_flip_px < WIDTH * HEIGHT / 4);
+        drv_drm_close(&r.drm);
+    }
+}
+
+TEST(a_card_that_refuses_clips_is_asked_without)
+{
+    static struct rig r;
+    fake_drm_reset();
+    set_up(&r, &standard);
+    fake_drm.takes_clips = true;
+    drv_drm_close(&r.drm);
+    assert_int_equal(drv_drm_open(&r.drm, &standard, r.now_us), LM_OK);
+    fake_drm.atomic_errno = EINVAL;
+    for (uint32_t n = 1; n <= 5; n++) {
+        assert_int_equal(show(&r, n), LM_OK);
+        fake_drm_blank();
+        assert_int_equal(middle(), n);
+        wait_us(&r, TICK_US);
+    }
+    assert_int_equal(r.drm.count.clipped, 0);
+    assert_int_equal(r.drm.count.errors, 0);
+    assert_int_equal(fake_drm.live_blobs, 0);
     drv_drm_close(&r.drm);
 }
 
