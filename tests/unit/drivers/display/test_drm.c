@@ -177,6 +177,65 @@ TEST(clips_hold_all_that_changed_however_the_picture_is_turned)
     }
 }
 
+/* Present the picture after a change of every `apart`th row's first pixels. */
+static int change_rows(struct rig *r, int32_t apart, uint32_t colour)
+{
+    struct lm_damage changed = {{0}};
+    for (int32_t y = 0; y < HEIGHT; y += apart) {
+        const int32_t left = 16 * (y / 8 % 2); /* bands that are not joined */
+        r->pixels[y * WIDTH + left] = colour;
+        lm_damage_mark(&changed, &(struct lm_rectangle){left, y, left + 1, y + 1});
+    }
+    return drv_drm_present(&r->drm, &r->picture, &changed, r->now_us);
+}
+
+static void open_with_clips(struct rig *r)
+{
+    set_up(r, &standard);
+    fake_drm.takes_clips = true;
+    drv_drm_close(&r->drm);
+    assert_int_equal(drv_drm_open(&r->drm, &standard, r->now_us), LM_OK);
+    for (uint32_t n = 1; n <= DRV_DRM_BUFFERS + 1; n++) {
+        assert_int_equal(show(r, n), LM_OK);
+        fake_drm_blank();
+        wait_us(r, TICK_US);
+    }
+    assert_int_equal(r->drm.count.clipped, 1);
+}
+
+TEST(the_last_clip_holds_all_that_others_do_not)
+{
+    static struct rig r;
+    open_with_clips(&r);
+    for (uint32_t n = 4; n < 8; n++) {
+        assert_int_equal(change_rows(&r, 1, n), LM_OK);
+        assert_int_equal(r.drm.clips, DRV_DRM_CLIPS);
+        fake_drm_blank();
+        wait_us(&r, TICK_US);
+        assert_true(show_copies());
+    }
+    drv_drm_close(&r.drm);
+}
+
+/* What was drawn and never shown is in no copy. */
+TEST(after_a_flip_that_failed_the_next_ones_have_no_clips)
+{
+    static struct rig r;
+    open_with_clips(&r);
+    fake_drm.atomic_errno = fake_drm.flip_errno = EACCES;
+    assert_int_equal(change_rows(&r, 1, 4), LM_ERR_IO);
+    fake_drm.atomic_errno = fake_drm.flip_errno = 0;
+    wait_us(&r, 2 * DRV_DRM_LOOK_US);
+    for (uint32_t n = 5; n < 9; n++) {
+        assert_int_equal(change_rows(&r, 100, n), LM_OK);
+        fake_drm_blank();
+        wait_us(&r, TICK_US);
+        assert_true(show_copies());
+    }
+    assert_int_equal(r.drm.count.clipped, 3);
+    drv_drm_close(&r.drm);
+}
+
 TEST(a_card_that_refuses_clips_is_asked_without)
 {
     static struct rig r;
