@@ -209,7 +209,8 @@ TEST(the_last_clip_holds_all_that_others_do_not)
     open_with_clips(&r);
     for (uint32_t n = 4; n < 8; n++) {
         assert_int_equal(change_rows(&r, 1, n), LM_OK);
-        assert_int_equal(r.drm.clips, DRV_DRM_CLIPS);
+        /* Before that, a buffer lacks all of the picture. */
+        assert_int_equal(r.drm.clips, n < 5 ? 1 : DRV_DRM_CLIPS);
         fake_drm_blank();
         wait_us(&r, TICK_US);
         assert_true(show_copies());
