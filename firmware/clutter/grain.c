@@ -43,6 +43,8 @@ void lm_grain_row(struct lm_grain_place place, int8_t *grain_q5, uint32_t cells)
     }
 }
 
+enum { GROUP = 16 }; /* cells that kernels read and write at once */
+
 static struct lm_k_curve kernel_curve(const struct lm_grain_curve *curve)
 {
     return (struct lm_k_curve){curve->base_db_q8, curve->rise_db_q8};
@@ -77,8 +79,8 @@ static void mix_rows(const struct lm_grain_stretch *s, int8_t *grain_q5, uint32_
     place.row++;
     lm_grain_row(place, second_q5, columns);
     const uint32_t way = (uint32_t)(s->row_q16 & 65535) / (65536 / LM_GRAIN_WAY);
-    const int32_t first_q7 = lm_grain_weight_q7[LM_GRAIN_WAY - way];
-    const int32_t second_q7 = lm_grain_weight_q7[way];
+    const int16_t first_q7 = lm_grain_weight_q7[LM_GRAIN_WAY - way];
+    const int16_t second_q7 = lm_grain_weight_q7[way];
     for (uint32_t i = 0; i < columns; i++) {
         grain_q5[i] = lm_k_grain_between(grain_q5[i], first_q7, second_q5[i], second_q7);
     }
@@ -88,15 +90,14 @@ void lm_grain_powers(const struct lm_grain_curve *curve, const struct lm_grain_s
                      uint32_t *power_q24, uint32_t cells)
 {
     int8_t column_q5[LM_CELLS_ROOM + LM_K_GRAIN_BEHIND], grain_q5[LM_CELLS_ROOM];
-    int32_t level_db_q8[LM_CELLS_ROOM];
+    int32_t *const level_db_q8 = (int32_t *)power_q24; /* in place */
     const struct lm_k_curve lines = kernel_curve(curve);
     const bool is_stretched = stretch->step_q16 < 65536;
     mix_rows(stretch, column_q5, cells + 1);
     if (is_stretched) {
         lm_k_grain_stretch(lm_grain_weight_q7, stretch->step_q16, column_q5, grain_q5, cells);
     }
-    memset(level_db_q8, 0, sizeof level_db_q8);
+    memset(level_db_q8, 0, (cells + GROUP - 1) / GROUP * GROUP * sizeof *level_db_q8);
     lm_k_grain_add(&lines, is_stretched ? grain_q5 : column_q5, level_db_q8, cells);
-    memcpy(power_q24, level_db_q8, cells * sizeof *power_q24);
     lm_k_powers_of_levels(power_q24, cells);
 }

@@ -126,8 +126,10 @@ enum { LM_K_GRAIN_WAY = 64, LM_K_GRAIN_BEHIND = 32 };
 static inline int8_t lm_k_grain_between(int8_t first, int32_t first_q7, int8_t second,
                                         int32_t second_q7)
 {
-    const int32_t number = (first * first_q7 + second * second_q7 + 64) >> 7;
-    return (int8_t)fx_clamp_i32(number, INT8_MIN, INT8_MAX);
+    const int16_t sum_q7 = (int16_t)(first * first_q7 + second * second_q7 + 64);
+    const int16_t number = (int16_t)(sum_q7 >> 7);
+    const int16_t held = number < INT8_MAX ? number : INT8_MAX;
+    return (int8_t)(held > INT8_MIN ? held : INT8_MIN);
 }
 
 /* Draw columns of the field wider than they are: cell i stands between the columns before and
