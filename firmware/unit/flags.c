@@ -6,11 +6,24 @@
 
 enum {
     TILE_FAULT_SHOWN_US = 3000000,
+    READ_US = 1000000, /* a read that takes longer will not end */
     SENDER_SHOWN_US = 3000000,
     /* An aircraft on the ground, or a height that is a little wrong, is not below the terrain.
      * UNSOURCED. */
     BELOW_M_Q10 = 10 << 10
 };
+
+/* A read that never ends is no error of the flash's, and yet no tile comes any more. */
+static bool is_read_stuck(struct lm_unit *u, uint64_t now_us)
+{
+    const struct lm_tile_cache *tiles = &u->map.tiles;
+    if (!u->map.is_usable || lm_tile_cache_is_idle(tiles) ||
+        tiles->count.bytes_read != u->tile_faults.bytes_asked) {
+        u->tile_faults.bytes_asked = tiles->count.bytes_read;
+        u->tile_faults.asked_us = now_us;
+    }
+    return now_us - u->tile_faults.asked_us > READ_US;
+}
 
 static uint32_t map_flags(struct lm_unit *u, uint64_t now_us)
 {
@@ -19,7 +32,8 @@ static uint32_t map_flags(struct lm_unit *u, uint64_t now_us)
         u->tile_faults.seen = faults;
         u->tile_faults.grew_us = now_us;
     }
-    const bool is_fault = faults != 0 && now_us - u->tile_faults.grew_us < TILE_FAULT_SHOWN_US;
+    const bool is_fault = is_read_stuck(u, now_us) ||
+                          (faults != 0 && now_us - u->tile_faults.grew_us < TILE_FAULT_SHOWN_US);
     return (u->map.is_usable ? 0u : LM_FLAG_DB) | (is_fault ? LM_FLAG_TILE : 0u);
 }
 

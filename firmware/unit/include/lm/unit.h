@@ -140,8 +140,10 @@ struct lm_unit {
 
     struct lm_unit_map map;
     struct {
-        uint32_t seen;    /* reads that failed and records with a wrong CRC */
-        uint64_t grew_us; /* when `seen` last grew */
+        uint32_t seen;        /* reads that failed and records with a wrong CRC */
+        uint64_t grew_us;     /* when `seen` last grew */
+        uint64_t bytes_asked; /* of the flash, when it last did something */
+        uint64_t asked_us;    /* when that was */
     } tile_faults;
 
     struct lm_keys keys;

@@ -176,6 +176,30 @@ TEST(a_record_damaged_in_flight_is_flagged_counted_and_answered_coarser)
     free_rig(r);
 }
 
+TEST(a_read_that_does_not_end_is_told_until_it_ends)
+{
+    struct rig *r = make_rig();
+    r->board.lent.tile_pool_bytes = 44 * sizeof(struct lm_tile); /* too few to keep them all */
+    assert_int_equal(lm_unit_init(&r->unit, &r->board.lent), LM_OK);
+    command(r, range_10);
+    run(r, 3);
+    r->board.flash.busy_polls = UINT32_MAX;
+    while (lm_tile_cache_is_idle(&r->unit.map.tiles)) {
+        run(r, 0.1);
+        assert_true(r->now_us < 60000000);
+    }
+    run(r, 0.9);
+    assert_false(r->unit.flags & LM_FLAG_TILE);
+    run(r, 0.4);
+    assert_true(r->unit.flags & LM_FLAG_TILE);
+    run(r, 10);
+    assert_true(r->unit.flags & LM_FLAG_TILE);
+    r->board.flash.busy_polls = r->board.flash.now.polls_left = 0;
+    run(r, 0.2);
+    assert_false(r->unit.flags & LM_FLAG_TILE);
+    free_rig(r);
+}
+
 TEST(late_flash_never_holds_the_sweep)
 {
     struct rig *r = start_rig();
