@@ -350,3 +350,117 @@ TEST(only_channel_0_is_heard)
     assert_int_equal(ear->live.set[0].parts, 0);
     free(ear);
 }
+
+/* ---- tables of the user's own ---- */
+
+/* A value as any table may tell it, past the ranges of the built-in one. */
+static void tell(struct ear *ear, struct from from, uint8_t field, int32_t value)
+{
+    const struct lm_bus_event event = {.field = field,
+                                       .value = value,
+                                       .time_us = from.time_us,
+                                       .stale_ms = 3000,
+                                       .dead_ms = 10000,
+                                       .node = from.node,
+                                       .service = from.number,
+                                       .code = from.code};
+    lm_live_bus_take(&ear->live, &event, from.time_us);
+}
+
+/* A ship with a height, a heading and a cross section, the number of one part as told. */
+static uint32_t told_with(uint8_t field, int32_t value)
+{
+    static const struct {
+        uint8_t field;
+        int32_t value;
+    } parts[] = {{LM_BUS_LIVE_LATITUDE, 1000},
+                 {LM_BUS_LIVE_LONGITUDE, 2000},
+                 {LM_BUS_LIVE_HEIGHT, 64},
+                 {LM_BUS_LIVE_HEADING, 100},
+                 {LM_BUS_LIVE_RCS, 256},
+                 {LM_BUS_LIVE_KIND,
+                  0x0d010000 | LM_LIVE_HAS_HEIGHT | LM_LIVE_HAS_HEADING | LM_LIVE_HAS_RCS}};
+    struct ear *ear = open_ear();
+    for (size_t i = 0; i < sizeof parts / sizeof *parts; i++) {
+        tell(ear, (struct from){20, 5, 1, S}, parts[i].field,
+             parts[i].field == field ? value : parts[i].value);
+    }
+    const uint32_t count = ear->live.live.count;
+    assert_int_equal(ear->live.count.refused, !count);
+    assert_int_equal(ear->live.count.torn, 0);
+    free(ear);
+    return count;
+}
+
+TEST(a_wider_table_is_held_to_the_displays_limits)
+{
+    static const struct {
+        uint8_t field;
+        int32_t last, beyond;
+    } limits[] = {{LM_BUS_LIVE_LATITUDE, 1 << 30, (1 << 30) + 1},
+                  {LM_BUS_LIVE_LATITUDE, -(1 << 30), -(1 << 30) - 1},
+                  {LM_BUS_LIVE_HEIGHT, LM_LIVE_HEIGHT_MAX_Q6, LM_LIVE_HEIGHT_MAX_Q6 + 1},
+                  {LM_BUS_LIVE_HEIGHT, -LM_LIVE_HEIGHT_MAX_Q6, INT32_MIN},
+                  {LM_BUS_LIVE_HEADING, LM_LIVE_TURN_MAX, LM_LIVE_TURN_MAX + 1},
+                  {LM_BUS_LIVE_RCS, 100 * 256, 100 * 256 + 1},
+                  {LM_BUS_LIVE_RCS, -100 * 256, INT32_MIN},
+                  {LM_BUS_LIVE_RCS, 0, 65536}};
+    for (size_t i = 0; i < sizeof limits / sizeof *limits; i++) {
+        assert_int_equal(told_with(limits[i].field, limits[i].last), 1);
+        assert_int_equal(told_with(limits[i].field, limits[i].beyond), 0);
+    }
+}
+
+/* A set that goes on with another node, code or an earlier time, or tells a part twice, begins
+ * anew; one that goes on within a fifth of a second does not. */
+TEST(a_set_is_of_one_node_one_code_and_a_fifth_of_a_second)
+{
+    static const struct {
+        struct from from;
+        bool is_whole;
+    } next[] = {{{20, 5, 1, S}, true},          {{21, 5, 1, S}, false},
+                {{20, 5, 2, S}, false},         {{20, 5, 1, S - 1}, false},
+                {{20, 5, 1, S + 200000}, true}, {{20, 5, 1, S + 200001}, false}};
+    for (size_t i = 0; i < sizeof next / sizeof *next; i++) {
+        struct ear *ear = open_ear();
+        tell(ear, (struct from){20, 5, 1, S}, LM_BUS_LIVE_LATITUDE, 1000);
+        tell(ear, (struct from){20, 5, 1, S}, LM_BUS_LIVE_LONGITUDE, 1000);
+        tell(ear, next[i].from, LM_BUS_LIVE_KIND, 0x0d010000);
+        assert_int_equal(ear->live.live.count, next[i].is_whole);
+        assert_int_equal(ear->live.count.torn, !next[i].is_whole);
+        free(ear);
+    }
+    struct ear *ear = open_ear();
+    tell(ear, (struct from){20, 5, 1, S}, LM_BUS_LIVE_LATITUDE, 1000);
+    tell(ear, (struct from){20, 5, 1, S}, LM_BUS_LIVE_LATITUDE, 2000);
+    tell(ear, (struct from){20, 5, 1, S}, LM_BUS_LIVE_LONGITUDE, 1000);
+    tell(ear, (struct from){20, 5, 1, S}, LM_BUS_LIVE_KIND, 0x0d010000);
+    assert_int_equal(ear->live.count.torn, 1);
+    assert_int_equal(target(ear, 5)->position.latitude, 2000);
+    free(ear);
+}
+
+/* Frames are taken by their own time, which may be a little ahead of the unit's. */
+TEST(a_target_heard_a_little_ahead_of_the_clock_stays)
+{
+    struct ear *ear = open_ear();
+    hear_small(ear, (struct from){20, 5, 1, 5 * S}, 460000000);
+    age(ear, 2 * S);
+    assert_int_equal(ear->live.live.count, 1);
+    age(ear, 2 * S - 1);
+    assert_int_equal(ear->live.live.count, 0);
+    free(ear);
+}
+
+TEST(what_is_of_no_live_target_is_not_taken)
+{
+    struct ear *ear = open_ear();
+    for (int field = 0; field < LM_BUS_FIELDS; field++) {
+        if (field < LM_BUS_LIVE_LATITUDE || field > LM_BUS_LIVE_CLEAR) {
+            tell(ear, (struct from){20, 5, 1, S}, (uint8_t)field, 0x0d010000);
+        }
+    }
+    assert_int_equal(ear->live.set[5].parts, 0);
+    assert_int_equal(ear->live.count.removed + ear->live.count.torn, 0);
+    free(ear);
+}

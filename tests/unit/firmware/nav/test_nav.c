@@ -818,3 +818,94 @@ TEST(the_same_frames_give_the_same_ownship_to_the_last_bit)
         assert_memory_equal(&at_a, &at_b, sizeof at_a);
     }
 }
+
+/* ---- values that the built-in table never tells ---- */
+
+static struct lm_bus_event coordinate(enum lm_bus_field field, int32_t value, uint32_t step,
+                                      uint64_t time_us)
+{
+    return (struct lm_bus_event){.field = (uint8_t)field,
+                                 .value = value,
+                                 .step = step,
+                                 .time_us = time_us,
+                                 .period_us = 100000,
+                                 .stale_ms = 300,
+                                 .dead_ms = 5000};
+}
+
+TEST(either_coordinate_that_is_coarse_makes_the_position_stale)
+{
+    for (int coarse = 0; coarse < 3; coarse++) {
+        struct ear ear;
+        open_ear(&ear);
+        hear_float(&ear, LM_BUS_NORTH_VELOCITY, 0, 0);
+        hear_float(&ear, LM_BUS_EAST_VELOCITY, 0, 0);
+        const struct lm_bus_event events[] = {
+            coordinate(LM_BUS_LATITUDE, 1 << 28, LM_NAV_COARSE_BAM + (coarse == 1), 0),
+            coordinate(LM_BUS_LONGITUDE, 1 << 28, LM_NAV_COARSE_BAM + (coarse == 2), 0)};
+        lm_nav_take(&ear.nav, &events[0]);
+        lm_nav_take(&ear.nav, &events[1]);
+        assert_int_equal(at(&ear, 0).position_quality, coarse ? LM_NAV_STALE : LM_NAV_GOOD);
+    }
+}
+
+TEST(a_coordinate_known_to_no_more_than_the_globe_is_held_within_half_of_it)
+{
+    struct ear ear;
+    open_ear(&ear);
+    hear_float(&ear, LM_BUS_NORTH_VELOCITY, 100, 0);
+    hear_float(&ear, LM_BUS_EAST_VELOCITY, 100, 0);
+    for (uint64_t i = 0; i < 10; i++) {
+        const struct lm_bus_event events[] = {
+            coordinate(LM_BUS_LATITUDE, 1 << 28, UINT32_MAX, i * 100000),
+            coordinate(LM_BUS_LONGITUDE, 1 << 28, UINT32_MAX, i * 100000)};
+        lm_nav_take(&ear.nav, &events[0]);
+        lm_nav_take(&ear.nav, &events[1]);
+    }
+    /* 90 m on by the velocity alone: the fixes do not contradict it. */
+    const double moved_m = (at(&ear, 900000).latitude - (1 << 28)) * 40007863.0 / 4294967296.0;
+    assert_true(moved_m > 80 && moved_m < 100);
+}
+
+TEST(a_longitude_before_any_latitude_is_taken_as_it_comes)
+{
+    struct ear ear;
+    open_ear(&ear);
+    hear_float(&ear, LM_BUS_NORTH_VELOCITY, 100, 0);
+    hear_float(&ear, LM_BUS_EAST_VELOCITY, 100, 0);
+    for (int i = 0; i < 3; i++) {
+        const struct lm_bus_event event =
+            coordinate(LM_BUS_LONGITUDE, 1000 * i, 4000, (uint64_t)i * 100000);
+        lm_nav_take(&ear.nav, &event);
+        assert_int_equal(ear.nav.item[LM_BUS_LONGITUDE][0].value, 1000 * i);
+    }
+    assert_int_equal(at(&ear, 200000).position_quality, LM_NAV_DEAD);
+}
+
+TEST(what_is_no_navigation_is_not_taken)
+{
+    struct ear ear;
+    open_ear(&ear);
+    const struct lm_nav before = ear.nav;
+    for (int field = LM_BUS_NAV_FIELDS; field < 256; field++) {
+        struct lm_bus_event event = coordinate(LM_BUS_LATITUDE, 5, 0, 0);
+        event.field = (uint8_t)field;
+        lm_nav_take(&ear.nav, &event);
+        assert_memory_equal(&ear.nav, &before, sizeof before);
+    }
+}
+
+/* Without a variation, 321 serves where the board says that it is true; where it is magnetic too,
+ * the compass does. */
+TEST(without_a_variation_a_magnetic_321_gives_way_to_the_compass)
+{
+    for (int is_magnetic = 0; is_magnetic < 2; is_magnetic++) {
+        struct ear ear;
+        open_ear(&ear);
+        ear.nav.is_heading_magnetic = is_magnetic;
+        hear_float(&ear, LM_BUS_HEADING, 90, 0);
+        hear_float(&ear, LM_BUS_MAGNETIC_HEADING, 88, 0);
+        assert_int_equal(at(&ear, 0).heading_source,
+                         is_magnetic ? LM_BUS_MAGNETIC_HEADING : LM_BUS_HEADING);
+    }
+}

@@ -431,3 +431,81 @@ TEST(a_state_that_a_wider_table_believes_is_refused)
     }
     assert_int_equal(w.count.refused, 4);
 }
+
+/* ---- sets and ages, value by value ---- */
+
+static void tell(struct lm_weather_bus *w, struct from from, uint8_t field, int32_t value)
+{
+    const struct lm_bus_event event = {.field = field,
+                                       .value = value,
+                                       .time_us = from.time_us,
+                                       .stale_ms = 3000,
+                                       .dead_ms = 10000,
+                                       .node = from.node,
+                                       .service = from.number,
+                                       .code = from.code};
+    lm_weather_bus_take(w, &event);
+}
+
+TEST(a_set_is_of_one_node_one_code_and_a_fifth_of_a_second)
+{
+    static const struct {
+        struct from from;
+        bool is_whole;
+    } next[] = {{{20, 0, 1, S}, true},
+                {{21, 0, 1, S}, false},
+                {{20, 0, 2, S}, false},
+                {{20, 0, 1, S - 1}, false},
+                {{20, 0, 1, S + LM_WEATHER_SET_US}, true},
+                {{20, 0, 1, S + LM_WEATHER_SET_US + 1}, false}};
+    for (size_t i = 0; i < sizeof next / sizeof *next; i++) {
+        struct lm_weather_bus w = {0};
+        tell(&w, (struct from){20, 0, 1, S}, LM_BUS_JAMMER_LATITUDE, 1000);
+        tell(&w, (struct from){20, 0, 1, S}, LM_BUS_JAMMER_LONGITUDE, 1000);
+        tell(&w, next[i].from, LM_BUS_JAMMER_RATIO, 20 * 256);
+        assert_int_equal(w.count.sets, next[i].is_whole);
+        assert_int_equal(w.count.torn, !next[i].is_whole);
+    }
+}
+
+TEST(a_wind_or_storm_that_is_old_is_flagged_and_a_commanded_one_is_not)
+{
+    for (int is_wind = 0; is_wind < 2; is_wind++) {
+        struct lm_weather_bus w = {0};
+        tell(&w, (struct from){20, 0, 1, S}, is_wind ? LM_BUS_WIND_DIRECTION : LM_BUS_SEA_STATE, 3);
+        struct lm_environment e = {0};
+        assert_false(lm_weather_bus_at(&w, 4 * S, &e));
+        e = (struct lm_environment){0};
+        assert_true(lm_weather_bus_at(&w, 4 * S + 1, &e));
+        assert_int_equal(e.has_wind, is_wind);
+        e = (struct lm_environment){.is_sea_commanded = true, .has_wind = true};
+        assert_false(lm_weather_bus_at(&w, 4 * S + 1, &e));
+        e = (struct lm_environment){0};
+        assert_false(lm_weather_bus_at(&w, 11 * S + 1, &e));
+        assert_false(e.has_wind);
+        /* A clock that is a little behind the frames, and one that was set back. */
+        tell(&w, (struct from){20, 0, 1, 20 * S},
+             is_wind ? LM_BUS_WIND_DIRECTION : LM_BUS_SEA_STATE, 3);
+        e = (struct lm_environment){0};
+        lm_weather_bus_at(&w, 17 * S, &e);
+        assert_int_equal(e.has_wind ? 3 : e.sea_state, 3);
+        e = (struct lm_environment){0};
+        lm_weather_bus_at(&w, 17 * S - 1, &e);
+        assert_int_equal(e.has_wind ? 3 : e.sea_state, 0);
+    }
+}
+
+TEST(there_are_no_more_jammers_than_an_environment_holds)
+{
+    struct lm_weather_bus w = {0};
+    for (uint8_t n = 0; n < LM_JAMMERS_MAX; n++) {
+        tell(&w, (struct from){20, n, 1, S}, LM_BUS_JAMMER_LATITUDE, 1000);
+        tell(&w, (struct from){20, n, 1, S}, LM_BUS_JAMMER_LONGITUDE, 1000);
+        tell(&w, (struct from){20, n, 1, S}, LM_BUS_JAMMER_RATIO, 20 * 256);
+    }
+    struct lm_environment e = {.jammer_count = 1, .jammer = {{.noise_ratio_db_q8 = 77}}};
+    lm_weather_bus_at(&w, S, &e);
+    assert_int_equal(e.jammer_count, LM_JAMMERS_MAX);
+    assert_int_equal(e.jammer[0].noise_ratio_db_q8, 77);
+    assert_int_equal(lm_environment_check(&e), LM_OK);
+}
