@@ -156,6 +156,65 @@ TEST(mode_settings_and_a_patch_are_told_as_the_glass_shows_them)
     free_rig(r);
 }
 
+TEST(each_switch_has_its_own_bit)
+{
+    static struct listener l;
+    struct rig *r = rig_that_tells(&l, NODE);
+    struct lm_page *page = &r->unit.page;
+    const struct {
+        bool *is_on;
+        uint8_t bit;
+    } switches[] = {{&page->is_frozen, 1 << 0},      {&page->is_override, 1 << 1},
+                    {&page->is_snowplow, 1 << 2},    {&page->is_auto_range, 1 << 3},
+                    {&page->is_tilt_manual, 1 << 4}, {&page->is_pencil, 1 << 5},
+                    {&page->is_plan, 1 << 6}};
+    run(r, 1.5);
+    for (size_t i = 0; i < sizeof switches / sizeof *switches; i++) {
+        *switches[i].is_on = true;
+        run(r, 0.6);
+        assert_int_equal(l.last[LM_REPORT_SETTINGS].data[5], switches[i].bit); /* docs/bus.md */
+        *switches[i].is_on = false;
+        run(r, 0.6);
+        assert_int_equal(l.last[LM_REPORT_SETTINGS].data[5], 0);
+    }
+    free_rig(r);
+}
+
+TEST(a_fixed_track_is_told_with_what_the_geodesic_says)
+{
+    static struct listener l;
+    struct rig *r = rig_that_tells(&l, NODE);
+    run(r, 1.5);
+    assert_false(is_told(&l, LM_REPORT_TRACK_LATITUDE));
+    command(r, (struct lm_control){.kind = LM_CONTROL_CURSOR,
+                                   .cursor = {FX_BAM_DEG(46), FX_BAM_DEG(221) / 20}});
+    run(r, 0.3);
+    command(r, (struct lm_control){.kind = LM_CONTROL_TRACK});
+    run(r, 1);
+    const struct geod_geodesic earth = wgs84();
+    double latitude, longitude, metres, bearing;
+    ownship_at(r, &latitude, &longitude);
+    geod_inverse(&earth, latitude, longitude, 46, 11.05, &metres, &bearing, NULL);
+    const double elevation = told(&l, LM_REPORT_TRACK_ELEVATION);
+    const double slant = told(&l, LM_REPORT_TRACK_SLANT);
+    assert_float_equal(told(&l, LM_REPORT_TRACK_LATITUDE), 46, 1e-4);
+    assert_float_equal(told(&l, LM_REPORT_TRACK_LONGITUDE), 11.05, 1e-4);
+    assert_float_equal(told(&l, LM_REPORT_TRACK_BEARING), bearing, 0.3);
+    assert_float_equal(elevation, hill_m(46, 11.05), 4);
+    assert_true(fabs(slant - hypot(metres, 2000 - elevation)) < 35);
+    assert_true(fabs(told(&l, LM_REPORT_TRACK_RATE) -
+                     (-150 * cos(bearing * 0.017453292519943) * metres / slant)) < 2);
+    assert_true(told(&l, LM_REPORT_TRACK_SPEED) == 0);
+    assert_false(is_told(&l, LM_REPORT_TRACK_COURSE)); /* it stands */
+    /* A place that is tracked is the place that is told. */
+    assert_float_equal(told(&l, LM_REPORT_PLACE_LATITUDE), 46, 1e-4);
+    assert_float_equal(told(&l, LM_REPORT_PLACE_ELEVATION), hill_m(46, 11.05), 4);
+    command(r, (struct lm_control){.kind = LM_CONTROL_DROP});
+    run(r, 0.5);
+    assert_false(is_told(&l, LM_REPORT_TRACK_LATITUDE) || is_told(&l, LM_REPORT_TRACK_SLANT));
+    free_rig(r);
+}
+
 TEST(a_board_that_leaves_the_radar_to_the_image_tells_its_scale)
 {
     static struct listener l;

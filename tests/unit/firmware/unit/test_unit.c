@@ -464,6 +464,13 @@ TEST(a_display_of_a_size_nobody_promised_is_refused)
     assert_int_equal(lm_unit_init(&r->unit, &r->board.lent), LM_ERR_RANGE);
     r->board.display.width_px = 1025;
     assert_int_equal(lm_unit_init(&r->unit, &r->board.lent), LM_ERR_RANGE);
+    r->board.display.width_px = WIDTH;
+    r->board.display.height_px = 255;
+    assert_int_equal(lm_unit_init(&r->unit, &r->board.lent), LM_ERR_RANGE);
+    r->board.display.height_px = 1025;
+    assert_int_equal(lm_unit_init(&r->unit, &r->board.lent), LM_ERR_RANGE);
+    r->board.display.height_px = HEIGHT;
+    assert_int_equal(lm_unit_init(&r->unit, &r->board.lent), LM_OK);
     free_rig(r);
 }
 
