@@ -215,6 +215,30 @@ TEST(a_fixed_track_is_told_with_what_the_geodesic_says)
     free_rig(r);
 }
 
+TEST(nothing_slews_the_cursor_away_from_what_is_tracked)
+{
+    static struct listener l;
+    struct rig *r = rig_that_tells(&l, NODE);
+    run(r, 1.5);
+    command(r, (struct lm_control){.kind = LM_CONTROL_CURSOR,
+                                   .cursor = {FX_BAM_DEG(46), FX_BAM_DEG(221) / 20}});
+    run(r, 0.3);
+    command(r, (struct lm_control){.kind = LM_CONTROL_TRACK});
+    run(r, 0.5);
+    command(r, lm_control_slew(1000, 1000));
+    const struct geod_geodesic earth = wgs84();
+    for (int i = 0; i < 20; i++) {
+        run(r, 0.1);
+        double latitude, longitude, metres, bearing;
+        ownship_at(r, &latitude, &longitude);
+        geod_inverse(&earth, latitude, longitude, 46, 11.05, &metres, &bearing, NULL);
+        assert_float_equal(told(&l, LM_REPORT_CURSOR_LATITUDE), 46, 1e-4);
+        assert_float_equal(told(&l, LM_REPORT_CURSOR_RANGE), metres, 40);
+        assert_float_equal(told(&l, LM_REPORT_CURSOR_BEARING), bearing, 0.4);
+    }
+    free_rig(r);
+}
+
 TEST(a_board_that_leaves_the_radar_to_the_image_tells_its_scale)
 {
     static struct listener l;
