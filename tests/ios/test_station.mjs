@@ -34,6 +34,14 @@ const factsOf = (lines) => {
     return lines.flatMap((line) => reader.take(parseLine(line)));
 };
 
+test('a saved list of events keeps commas, quotes and lines in their fields', async () => {
+    const {csvOf} = await site('events.mjs');
+    const events = [{busUs: 1.7e15, exerciseMs: 3723000, text: 'Rain 1, told', by: 'this page'},
+        {busUs: 1.7e15 + 1.5e6, exerciseMs: null, text: 'a "quoted"\nname', by: 'nobody'}];
+    assert.equal(csvOf(events), 'utc,exercise,event,by\r\n2023-11-14T22:13:20.000Z,1:02:03,"Rain 1, told",this page\r\n'
+        + '2023-11-14T22:13:21.500Z,,"a ""quoted""\nname",\r\n');
+});
+
 /* ---- frames ---- */
 
 test('a live target is what landmass-bus reads of it', () => {

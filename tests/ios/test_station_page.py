@@ -1,7 +1,10 @@
 """The instructor's page in Chromium: every control is worked, its frames are taken from the bus, and a display that
 hears them is read. TAP."""
+import csv
 import json
 import pathlib
+import re
+import shutil
 import signal
 import sys
 import time
@@ -438,6 +441,25 @@ def what_cannot_be_is_said_and_not_sent(p, _):
     assert "hours:minutes:seconds" in p.b.find("message").text
 
 
+def the_events_are_saved_as_a_file(p, _):
+    p.tab("weather")
+    folder = TMP.resolve() / "saved"
+    shutil.rmtree(folder, ignore_errors=True)
+    p.b.driver.execute_cdp_cmd("Browser.setDownloadBehavior", {"behavior": "allow", "downloadPath": str(folder)})
+    p.told(lambda: p.click("sea-tell"), 1808)
+    p.wait("sea !== null")
+    p.click("events-save")
+    saved = p.js("return station.saved")
+    end = time.monotonic() + 30
+    while not (folder / saved["name"]).exists() and time.monotonic() < end:
+        time.sleep(0.1)
+    rows = list(csv.reader((folder / saved["name"]).open(newline="")))
+    assert rows[0] == ["utc", "exercise", "event", "by"] and len(rows) == p.world("events.length") + 1, rows[:2]
+    assert all(len(row) == 4 for row in rows), rows
+    assert "sea" in rows[-1][2].lower() and re.fullmatch(r"\d{4}-\d\d-\d\dT\d\d:\d\d:\d\d\.\d{3}Z", rows[-1][0]), rows[-1]
+    p.told(lambda: p.click("weather-clear"), 1807)
+
+
 def two_instructors_agree(p, _):
     other = Page(p.b.url).start()
     try:
@@ -603,7 +625,8 @@ TESTS = [a_target_is_placed_and_stands_on_the_glass, a_target_that_is_dragged_mo
          sea_and_wind_are_told, each_malfunction_breaks_the_picture_and_is_mended, a_dead_key_does_nothing,
          every_key_of_the_bezel_is_obeyed, the_picture_is_held_and_released, mode_range_width_and_gain_are_obeyed,
          cursor_steerpoint_and_patch_go_where_the_map_says, designate_drop_slew_and_knob_are_obeyed,
-         the_clock_freezes_runs_jumps_and_has_a_seed, what_cannot_be_is_said_and_not_sent, two_instructors_agree,
+         the_clock_freezes_runs_jumps_and_has_a_seed, what_cannot_be_is_said_and_not_sent, the_events_are_saved_as_a_file,
+         two_instructors_agree,
          stale_navigation_and_a_lost_connection_are_plain, a_page_that_may_only_listen_tells_nothing,
          the_keyboard_alone_is_enough,
          fingers_pan_zoom_and_place_on_a_tablet, the_page_fits_and_is_calm_where_motion_is_not_wanted,

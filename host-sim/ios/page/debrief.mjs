@@ -1,4 +1,5 @@
 /* Debrief: recordings of a display, flown again in the page. */
+import {saveAs} from './dom.mjs';
 import {Player} from './web/player.mjs';
 
 const SPEEDS = [0.1, 0.25, 0.5, 1, 2, 4, 8, 16, 64];
@@ -215,12 +216,7 @@ class Debrief {
     }
 
     save(blob, ending) {
-        const link = document.createElement('a');
-        link.href = URL.createObjectURL(blob);
-        link.download = `${this.name ?? 'landmass'}-${clockOf(this.us ?? 0).replace(/\D/g, '-')}.${ending}`;
-        link.click();
-        this.saved = {name: link.download, bytes: blob.size, type: blob.type};
-        setTimeout(() => URL.revokeObjectURL(link.href), 60000);
+        this.saved = saveAs(`${this.name ?? 'landmass'}-${clockOf(this.us ?? 0).replace(/\D/g, '-')}.${ending}`, blob);
     }
 
     png() {

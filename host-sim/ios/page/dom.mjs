@@ -50,3 +50,11 @@ export function rows(body, items, create, update) {
     });
     held.forEach((element) => element.remove());
 }
+
+/* Give the user a file. What it is: {name, bytes, type}. */
+export function saveAs(name, blob) {
+    const link = make('a', {href: URL.createObjectURL(blob), download: name});
+    link.click();
+    setTimeout(() => URL.revokeObjectURL(link.href), 60000);
+    return {name, bytes: blob.size, type: blob.type};
+}

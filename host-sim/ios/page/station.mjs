@@ -1,6 +1,7 @@
 /* The instructor's page. It says what the bus says, and asks for nothing but by frames of the bus. */
 import {Commands} from './commands.mjs';
-import {find, make, rows, say} from './dom.mjs';
+import {find, make, rows, saveAs, say} from './dom.mjs';
+import {csvOf} from './events.mjs';
 import {ID, Reader, STATION_NODE} from './frames.mjs';
 import {clockWords, NAUTICAL_MILE_M, placeWords} from './geo.mjs';
 import {Keeper} from './keeper.mjs';
@@ -209,6 +210,12 @@ class Station {
         });
     }
 
+    saveEvents() {
+        const {events} = this.world, now = new Date(events.at(-1)?.busUs / 1000 || Date.now());
+        const name = `events-${now.toISOString().slice(0, 19).replace(/\D/g, '-')}.csv`;
+        this.saved = saveAs(name, new Blob([csvOf(events)], {type: 'text/csv'}));
+    }
+
     /* Something that the instructor must know now. */
     report(text) {
         say(find('message'), text);
@@ -233,7 +240,7 @@ class Station {
         find('map-follow').checked = true;
         find('map-follow').addEventListener('change', () => { this.map.isFollowing = find('map-follow').checked; });
         const acts = {'map-in': () => this.map.zoomBy(0.5), 'map-out': () => this.map.zoomBy(-0.5),
-            'map-whole': () => this.map.wholeMap()};
+            'map-whole': () => this.map.wholeMap(), 'events-save': () => this.saveEvents()};
         Object.entries(acts).forEach(([id, act]) => find(id).addEventListener('click', act));
     }
 

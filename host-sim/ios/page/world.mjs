@@ -4,7 +4,7 @@ import {ahead, between, clockWords, placeWords} from './geo.mjs';
 
 export const STALE_US = 3e6, DEAD_US = 10e6; // of what the exercise tells
 export const OWN_STALE_US = 1e6, OWN_DEAD_US = 2e6;
-const TRACK_MOST = 3000, TRACK_STEP_M = 50, EVENTS_MOST = 500, NOTICE_US = 10e6;
+const TRACK_MOST = 3000, TRACK_STEP_M = 50, EVENTS_MOST = 10000, NOTICE_US = 10e6;
 const JUMP_M = 20000; // the track is broken there
 
 /* What a fact is about: what another node may not tell while the first one does. */
