@@ -38,3 +38,4 @@ def make_site():
     (SITE.parent / "bad.log").write_text("no frame\n")
     subprocess.run([BUILD / "bin/landmass-nav", "--straight", "45.95,11,0,3000,180", "--seconds", "20", "--out",
                     SITE.parent / "bus.log"], check=True, stdout=subprocess.DEVNULL)
+    shutil.copy(SITE.parent / "bus.log", SITE / "flight.log")

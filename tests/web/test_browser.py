@@ -230,6 +230,34 @@ def a_log_flies_and_a_bad_one_is_refused(b):
     b.until("landmass.unit.flash.source.name === 'scene.lmdb' && landmass.unit.value('pictures') > 10")
 
 
+def the_flight_beside_the_page_flies_and_a_missing_one_is_said(b):
+    b.start()
+    b.find("recorded").click()
+    b.until("landmass.bus.constructor.name === 'LogBus' && landmass.bus.next > 1000")
+    assert b.find("message").text == "", b.find("message").text
+    b.find("by-hand").click()
+    (SITE / "flight.log").rename(SITE / "away")
+    try:
+        b.find("recorded").click()
+        b.until("document.getElementById('message').textContent.includes('flight.log: the server answers 404')")
+        assert b.ask("landmass.bus.constructor.name") == "Flight"
+    finally:
+        (SITE / "away").rename(SITE / "flight.log")
+
+
+def the_glass_is_drawn_once_a_second_where_motion_is_not_wanted(b):
+    b.driver.execute_cdp_cmd("Emulation.setEmulatedMedia", {"features": [{"name": "prefers-reduced-motion", "value": "reduce"}]})
+    try:
+        b.start()
+        b.driver.execute_script("const {context} = landmass, put = context.putImageData.bind(context); landmass.drawn = 0;"
+                                "context.putImageData = (...a) => { landmass.drawn++; put(...a); }")
+        begun = value(b, "pictures")
+        time.sleep(3)
+        assert 1 <= b.ask("landmass.drawn") <= 4 and value(b, "pictures") > begun + 20, b.ask("landmass.drawn")
+    finally:
+        b.driver.execute_cdp_cmd("Emulation.setEmulatedMedia", {"features": []})
+
+
 def a_recording_is_flown_again_and_one_of_another_image_is_refused(b):
     country = SITE.parent / "scene.lmdb"
     shutil.copy(SITE / "scene.lmdb", country)
@@ -284,7 +312,8 @@ TESTS = [golden_pictures_are_those_of_the_pc, the_page_flies_and_asks_no_other_s
          the_cursor_moves_and_designate_draws_a_patch, a_gamepad_moves_the_cursor_flies_and_designates,
          a_finger_holds_a_key_and_flies, everything_has_a_name_and_comes_in_order,
          the_keyboard_alone_reaches_everything,
-         the_flight_turns_and_pauses_by_key, a_log_flies_and_a_bad_one_is_refused,
+         the_glass_is_drawn_once_a_second_where_motion_is_not_wanted,
+         the_flight_beside_the_page_flies_and_a_missing_one_is_said, the_flight_turns_and_pauses_by_key, a_log_flies_and_a_bad_one_is_refused,
          a_recording_is_flown_again_and_one_of_another_image_is_refused, a_live_bus_flies,
          a_missing_image_is_said]
 

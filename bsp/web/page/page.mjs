@@ -10,7 +10,7 @@ import {Player} from './player.mjs';
 import {Tour} from './tour.mjs';
 import {Unit} from './unit.mjs';
 
-const SIDE = 768, STEP_US = 4000, BEHIND_MOST_US = 100000, TAP_MS = 60;
+const SIDE = 768, STEP_US = 4000, BEHIND_MOST_US = 100000, TAP_MS = 60, CALM_MS = 1000;
 const FULL = 1000; // LM_FULL_DEFLECTION
 const START = {latitude: 42.045, longitude: -29.18, headingDeg: 90, heightM: 3000, speedMs: 180};
 
@@ -24,6 +24,8 @@ class Page {
         this.context = find('glass').getContext('2d', {alpha: false});
         this.moduleBytes = await (await fetch('landmass.wasm')).arrayBuffer();
         this.hands = makeBezel(find('bezel'), (isDown, number) => this.unit?.calls.button(isDown, number));
+        this.calm = matchMedia('(prefers-reduced-motion: reduce)'); // then the glass is drawn once a second
+        this.paintedMs = -Infinity;
         this.deflection = [0, 0];
         this.knob = 0;
         this.byHand();
@@ -82,7 +84,8 @@ class Page {
         while (!isPaused && this.nowUs + STEP_US <= (ms - this.begunMs) * 1000) {
             this.step();
         }
-        if (this.unit.hasNewPicture()) {
+        if (ms - this.paintedMs >= (this.calm.matches ? CALM_MS : 0) && this.unit.hasNewPicture()) {
+            this.paintedMs = ms;
             this.context.putImageData(new ImageData(this.unit.paint(), SIDE, SIDE), 0, 0);
             this.figures.pictures++;
             this.firstPictureMs ??= performance.now(); // since the page was asked for
@@ -167,7 +170,7 @@ class Page {
             hold(b, () => this.slew(x, y), () => this.slew(-x, -y));
         });
         const clicks = {designate: () => this.unit.calls.designate(), drop: () => this.unit.calls.drop(),
-            pause: () => this.togglePause(), 'by-hand': () => this.byHand(), connect: () => this.connect(),
+            pause: () => this.togglePause(), 'by-hand': () => this.byHand(), recorded: () => this.flyRecorded(), connect: () => this.connect(),
             'tour-next': () => this.tour.next(), 'tour-back': () => this.tour.back()};
         Object.entries(clicks).forEach(([id, act]) => find(id).addEventListener('click', act));
         find('knob').addEventListener('input', () => this.turnKnob(Number(find('knob').value)));
@@ -208,6 +211,15 @@ class Page {
         } catch (error) {
             this.say(`${file.name}: ${error.message}`);
         }
+    }
+
+    /* The flight that lies beside the page. */
+    async flyRecorded() {
+        const answer = await fetch('flight.log').catch(({message}) => ({ok: false, status: message}));
+        if (answer.ok) {
+            this.setBus(new LogBus(await answer.text()));
+        }
+        this.say(answer.ok ? '' : `flight.log: the server answers ${answer.status}`);
     }
 
     /* A recording has its own bus, keys and clock: the unit that flew stands still meanwhile. */
