@@ -26,6 +26,6 @@ def follow(b, name):
     """Open the repeater of a display, and note each picture of its canvas in `sums`."""
     b.get(f"repeater.html?display={name}")
     b.until("globalThis.repeater?.player")
-    b.driver.execute_script(
+    b.run(
         CANVAS_SUM + "repeater.onPicture = ({picture, steps}) => sums.set(picture, {steps, sum: sumOf()});"
         "repeater.player.ask('every', {isEvery: true});")

@@ -56,6 +56,10 @@ class Browser:
     def find(self, name):
         return self.driver.find_element(By.ID, name)
 
+    def run(self, words):
+        """Do what statements say."""
+        self.driver.execute_script(words)
+
     def ask(self, expression):
         return self.driver.execute_script(f"return {expression}")
 

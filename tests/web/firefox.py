@@ -33,7 +33,7 @@ class Firefox:
             "".join(f"user_pref({json.dumps(name)}, {json.dumps(value)});\n" for name, value in PREFERENCES.items()))
         with (self.profile / "said").open("w") as said:
             self.child = subprocess.Popen(["firefox-esr", "--headless", "--no-remote", "--profile", self.profile,
-                                           "--remote-debugging-port", "0"], stderr=said)
+                                           "--remote-debugging-port", "0"], stdout=said, stderr=said)
 
     def _port(self):
         """Where it listens, which it says."""
@@ -69,6 +69,10 @@ class Firefox:
 
     def get(self, page=""):
         self.do("browsingContext.navigate", context=self.context, url=self.url + page, wait="complete")
+
+    def run(self, words):
+        """Do what statements say."""
+        self.ask(f"(() => {{ {words} }})()")
 
     def ask(self, expression):
         """The value of an expression, or of the promise that it is."""

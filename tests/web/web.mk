@@ -12,6 +12,7 @@ $(O)/bin/tests/web/test_module:  WEB_RUN := node --test-reporter=tap tests/web/t
 $(O)/bin/tests/web/test_recording: WEB_RUN := node --test-reporter=tap tests/web/test_recording.mjs
 $(O)/bin/tests/web/test_recording $(O)/bin/tests/web/test_browser: $(O)/bin/tests/replay/flights
 $(O)/bin/tests/web/test_browser: WEB_RUN := /usr/bin/python3 -B tests/web/test_browser.py
+$(O)/bin/tests/web/test_firefox: $(O)/bin/landmass-ios $(O)/bin/tests/replay/flights $(O)/ios/.made
 $(O)/bin/tests/web/test_firefox: WEB_RUN := /usr/bin/python3 -B tests/web/test_firefox.py
 $(WEB_TESTS): $(addprefix $(O)/bin/tests/zcu102/,golden_flash picture_checksum) $(addprefix $(O)/bin/landmass-,nav sim) | web-modules
 	@mkdir -p $(@D)
