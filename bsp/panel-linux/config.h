@@ -53,9 +53,10 @@ struct config {
     char can_2_table[CONFIG_PATH];
     struct config_nodes can_nodes;
     uint32_t can_node;
-    uint32_t can_partner;  /* 0: there is none */
-    uint32_t can_heading;  /* 1: magnetic */
-    uint32_t can_reports;  /* 1: on */
+    uint32_t can_partner; /* 0: there is none */
+    uint32_t can_heading; /* 1: magnetic */
+    uint32_t can_reports; /* 1: on */
+    char settings[128];
     uint32_t can_controls; /* 1: obey */
     uint32_t seed;
     uint32_t tiles;

@@ -61,6 +61,9 @@ const struct config_row config_table[] = {
     OPTION(CONFIG_CHOICE, can_controls, 0, 0, "off obey", "can.controls", "off | obey", "off",
            "Whether keys, knobs and commands that come as frames of the bus are obeyed "
            "(docs/bus.md)."),
+    OPTION(CONFIG_PATH_TO, settings, 0, ROOM(settings), "none", "settings", "PATH | none", "none",
+           "The settings outlive a restart in this file, such as "
+           "/var/lib/landmass-panel/settings; the glass then says RESTART for ten seconds."),
     OPTION(CONFIG_NUMBER, seed, 0, 2147483647, NULL, "seed", "0..2147483647", "0",
            "Another number gives another speckle, and nothing else."),
     OPTION(CONFIG_NUMBER, tiles, 120, 512, NULL, "tiles", "120..512", "384",

@@ -213,6 +213,7 @@ static int start_unit(struct panel *p, const struct lm_flash *flash)
                     .has_heading = p->config->glass_heading != 0,
                     .has_strobe = p->config->glass_strobe != 0,
                     .has_borders = p->config->glass_borders != 0},
+        .settings = settings_file_read(&p->settings, p->config->settings),
         .flash_poll_limit = START_POLLS};
     p->board.tile_pool = calloc(1, p->board.tile_pool_bytes);
     p->board.plane = calloc(1, pixels);
@@ -280,6 +281,7 @@ int panel_open(struct panel *p, const struct config *config)
     open_watchdog(p); /* last: until the loop runs, nobody feeds it */
     if (status == 0) {
         recording_start(&p->recording, p->board.restart);
+        settings_file_start(&p->settings);
     }
     if (status != 0) {
         panel_close(p);
@@ -291,6 +293,7 @@ void panel_close(struct panel *p)
 {
     drv_watchdog_notify(&p->watchdog, "STOPPING=1");
     recording_close(&p->recording);
+    settings_file_close(&p->settings);
     hand_close(&p->hand);
     bezel_close(&p->bezel);
     glass_close(&p->glass);

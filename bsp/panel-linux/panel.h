@@ -15,6 +15,7 @@
 #include "hand_controller.h"
 #include "lm/unit.h"
 #include "recording.h"
+#include "settings_file.h"
 
 enum {
     PANEL_TICK_US = 2000, /* time between steps: at the fastest scale a line is due every 2 ms */
@@ -38,6 +39,7 @@ struct panel {
     struct bus_table table, table_2; /* likewise */
     struct lm_board board;
     struct recording recording;
+    struct settings_file settings;
     struct lm_unit *unit;     /* owned */
     uint32_t flags_told;      /* enum lm_flag, as reported last */
     const char *trouble_told; /* of the recording, likewise */

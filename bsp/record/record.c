@@ -283,6 +283,9 @@ void record_begin(struct recorder *r, const struct record_sink *sink, struct lm_
     wrap(r, board);
     put_blob(r, RECORD_HEAD, (const uint8_t *)text,
              (uint32_t)record_head_write(&head, text, sizeof text));
+    if (board->settings) {
+        put_blob(r, RECORD_SETTINGS, (const uint8_t *)board->settings, sizeof *board->settings);
+    }
     if (head.has_nodes) {
         put_blob(r, RECORD_NODES, head.nodes, sizeof head.nodes);
     }

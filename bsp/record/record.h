@@ -38,6 +38,8 @@ enum {
     RECORD_NODES = 15, /* blob: the nodes that are heard, where not all are */
     RECORD_RESTART = 16, /* blob: the cause of the restart, where it is learnt after the start */
     RECORD_CEASED = 17,  /* the recorder gave up here, and the unit flew on: why, lines lost */
+    RECORD_SETTINGS =
+        18, /* blob: the settings that the unit began with, where not those of power-up */
     RECORD_KINDS
 };
 
@@ -89,7 +91,9 @@ struct record_head {
                           partner's node */
     char restart[24];  /* "-": none */
     char build[16];    /* record_build of the program that recorded */
-    /* Not a word of the head, but a line below it. */
+    /* Not words of the head, but lines below it. */
+    bool has_settings;
+    struct lm_settings settings; /* of before the restart */
     bool has_nodes;
     uint8_t nodes[LM_BUS_NODE_BYTES]; /* that are heard; without has_nodes all are */
 };

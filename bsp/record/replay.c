@@ -177,6 +177,11 @@ static bool take_setting(struct replay *p)
         memcpy(h->nodes, e->blob, sizeof h->nodes);
         return true;
     }
+    if (e->frame.id == RECORD_SETTINGS && e->blob_bytes == sizeof h->settings) {
+        h->has_settings = true;
+        memcpy(&h->settings, e->blob, sizeof h->settings);
+        return true;
+    }
     if (e->frame.id == RECORD_RESTART) {
         memcpy(h->restart, e->blob, sizeof h->restart - 1); /* whose last byte stays 0 */
         if (p->board) {
@@ -190,7 +195,7 @@ static bool take_setting(struct replay *p)
 static bool is_blob(uint32_t kind)
 {
     return kind == RECORD_HEAD || kind == RECORD_CONTROL || kind == RECORD_NODES ||
-           kind == RECORD_RESTART;
+           kind == RECORD_RESTART || kind == RECORD_SETTINGS;
 }
 
 /* See that the next event is there. */
@@ -525,6 +530,7 @@ static void set_board(struct replay *p, struct lm_board *board)
     board->flash_poll_limit = h->flash_poll_limit;
     board->tile_pool_bytes = h->tile_slots * sizeof(struct lm_tile);
     board->bus_nodes = h->has_nodes ? p->head.nodes : NULL;
+    board->settings = h->has_settings ? &h->settings : NULL;
     board->restart = is_same(h->restart, "-") || h->restart[0] == '\0' ? NULL : p->head.restart;
 }
 

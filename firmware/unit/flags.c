@@ -101,6 +101,7 @@ uint32_t lm_update_flags(struct lm_unit *u, uint64_t now_us)
                                                                                : 0u) |
         (u->malfunctions.now.set != 0 ? LM_FLAG_MALFUNCTION : 0u) |
         (now_us < u->unable.until_us ? LM_FLAG_UNABLE : 0u) |
+        (u->is_restored && now_us < LM_RESTART_SHOWN_US ? LM_FLAG_RESTART : 0u) |
         (is_bus_silent(u, now_us) ? LM_FLAG_BUS : 0u);
     const uint32_t risen = flags & ~u->flags;
     lm_fault_log_add(&u->faults, risen, now_us);

@@ -81,3 +81,14 @@ void lm_settings_take(struct lm_unit *u, const struct lm_settings *s, uint32_t b
     lm_apply_effects(u, LM_EFFECT_TONE | LM_EFFECT_BEAM | LM_EFFECT_HEIGHT | LM_EFFECT_PALETTE,
                      now_us);
 }
+
+void lm_settings_restore(struct lm_unit *u)
+{
+    const struct lm_settings *kept = u->board->settings;
+    u->is_restored = kept != NULL && lm_settings_are_sound(u, kept);
+    if (u->is_restored) {
+        struct lm_settings s = *kept;
+        s.page[PICTURE] = LM_PICTURE_SECTOR;
+        lm_settings_take(u, &s, LM_PAGE_BYTES, 0);
+    }
+}

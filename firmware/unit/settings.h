@@ -4,8 +4,7 @@
 
 #include "lm/unit.h"
 
-/* The present settings. */
-void lm_settings_give(const struct lm_unit *u, struct lm_settings *s);
+/* lm_settings_give is in lm/unit.h. */
 
 /* True if the page's bytes are sound and the cursor is on the earth. The other numbers are brought
  * into their range when they are taken. */
@@ -15,5 +14,8 @@ bool lm_settings_are_sound(const struct lm_unit *u, const struct lm_settings *s)
  * drawn anew, seen from where it was seen; if that is refused, and if not, the sector begins. */
 void lm_settings_take(struct lm_unit *u, const struct lm_settings *s, uint32_t bytes,
                       uint64_t now_us);
+
+/* Take the board's settings, if it has any and they are sound. */
+void lm_settings_restore(struct lm_unit *u);
 
 #endif

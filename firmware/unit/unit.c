@@ -10,6 +10,7 @@
 #include "pacing.h"
 #include "present.h"
 #include "report.h"
+#include "settings.h"
 #include "swap.h"
 #include "tracking.h"
 
@@ -79,6 +80,7 @@ int lm_unit_init(struct lm_unit *u, const struct lm_board *board)
     u->ground_m_q10 = LM_NO_ELEVATION;
     init_picture(u);
     lm_apply_effects(u, LM_EFFECT_SECTOR | LM_EFFECT_TONE | LM_EFFECT_PALETTE, 0);
+    lm_settings_restore(u);
     return LM_OK;
 }
 
@@ -169,11 +171,12 @@ static void restart_after_jump(struct lm_unit *u, uint64_t now_us)
     }
     if (is_other_source || u->nav.position_jumps != u->position_seen.jumps) {
         u->position_seen.jumps = u->nav.position_jumps;
-        u->cursor.is_placed = false;
+        u->cursor.is_placed = u->cursor.is_placed && !u->position_seen.is_known;
         if (lm_picture_moves(&u->picture)) {
             lm_picture_start(&u->picture, u->page.picture, NULL, now_us);
         }
     }
+    u->position_seen.is_known |= u->ownship.position_quality != LM_NAV_DEAD;
 }
 
 /* Draw the lines that are due. Returns how many more the step has time for. */

@@ -34,10 +34,11 @@ enum lm_flag {
     LM_FLAG_EXERCISE = 1 << 12, /* the sender of the exercise is silent: its clock runs on by
                                    itself, its malfunctions will end, or its live targets go */
     LM_FLAG_SENDER = 1 << 13,   /* a sender of the bus is stuck, has a rival, or is contradicted */
-    LM_FLAG_MALFUNCTION = 1 << 14 /* the exercise has broken something: not written over the picture
-                                   */
+    LM_FLAG_MALFUNCTION = 1 << 14, /* the exercise has broken something: not written over the
+                                      picture */
+    LM_FLAG_RESTART = 1 << 15      /* the display has restarted, with the settings of before */
 };
-enum { LM_FLAGS = 15 };
+enum { LM_FLAGS = 16 };
 
 /* The word of flag `number`, 0..LM_FLAGS - 1, which is the number of its bit: at most eight
  * characters, in static memory. */

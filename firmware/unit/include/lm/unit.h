@@ -91,9 +91,11 @@ struct lm_board {
     uint32_t noise_seed;    /* chooses the draws of speckle and noise, and nothing else; the seed
                                of the exercise replaces it */
     struct lm_glass_options options;
-    uint32_t flash_poll_limit; /* polls after which a read at the start is given up */
-    const char *restart;       /* cause of the board's restart, at most 20 capitals; NULL: power was
-                                  switched on */
+    uint32_t flash_poll_limit;          /* polls after which a read at the start is given up */
+    const struct lm_settings *settings; /* of before the restart: lm_settings_give; only read by
+                                           lm_unit_init. NULL: those of power-up */
+    const char *restart; /* cause of the board's restart, at most 20 capitals; NULL: power was
+                            switched on */
 };
 
 /* Time between two frames, and the silence on the bus after which LM_FLAG_BUS rises. */
@@ -104,6 +106,9 @@ enum { LM_GLASS_STEP_PX = 32768 };
 
 /* Steps that a frame takes at most, from its surface lent to the surface shown. */
 enum { LM_FRAME_STEPS = 64 };
+
+/* How long LM_FLAG_RESTART is shown. */
+enum { LM_RESTART_SHOWN_US = 10000000 };
 
 /* Elevation of a position outside the map. */
 #define LM_NO_ELEVATION INT32_MIN
@@ -122,7 +127,9 @@ struct lm_unit {
     struct lm_swap swap;
     uint64_t last_bus_us;   /* arrival of the last frame that was no error report */
     uint64_t last_bus_2_us; /* the same of can_2 */
+    bool is_restored;       /* it began with the board's settings */
     struct {
+        bool is_known;  /* there was a position */
         uint32_t jumps; /* nav.position_jumps as of the last step */
         uint16_t rank;  /* rank of the position's sender (struct lm_nav_origin) as of then */
     } position_seen;
@@ -185,9 +192,10 @@ struct lm_unit {
     } count;                       /* only ever grow */
 };
 
-/* Put the unit in its first state: ground map, +-60 degrees, 40 nm. Reads the image's tables and
- * its coarsest LOD, and waits for the flash meanwhile. Returns LM_OK also if the image cannot be
- * used: the unit then runs and shows LM_FLAG_DB.
+/* Put the unit in its first state: ground map, +-60 degrees, 40 nm; or the board's settings, if
+ * they are sound: their page and cursor, and no patch, which showed a moment that is gone. Reads
+ * the image's tables and its coarsest LOD, and waits for the flash meanwhile. Returns LM_OK also if
+ * the image cannot be used: the unit then runs and shows LM_FLAG_DB.
  *
  * Fails iff one of these holds; the unit must then not be stepped:
  * - LM_ERR_TABLE: the board's radar table breaks its contract; lm_radar_check (lm/radar_check.h)
@@ -195,6 +203,9 @@ struct lm_unit {
  * - LM_ERR_RANGE: the display has less than 256 or more than 1024 pixels either way;
  * - LM_ERR_NO_MEMORY: the tile pool is too small for the image's coarsest LOD and 16 tiles. */
 int lm_unit_init(struct lm_unit *u, const struct lm_board *board);
+
+/* The present settings, for a board that keeps them for the next start, or for another display. */
+void lm_settings_give(const struct lm_unit *u, struct lm_settings *s);
 
 /* Do what is due at `now_us`: microseconds since the start, never less than in the call before. In
  * this order:

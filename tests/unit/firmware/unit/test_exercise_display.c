@@ -10,7 +10,7 @@
 #include <math.h>
 #include <string.h>
 
-enum { S = 1000000, TELL_US = S };
+enum { S = 1000000, TELL_US = S, QUEUE = 64 };
 
 /* The exercise as the bus tells it: one for all displays. */
 struct exercise {
@@ -30,6 +30,9 @@ struct display {
     uint32_t part; /* next frame of the exercise to tell */
     bool is_half;  /* the second half of a latitude is next */
     uint8_t code;
+    struct display *partner; /* hears what this one says; NULL: there is none */
+    struct lm_can_frame said[QUEUE];
+    uint32_t said_head, said_tail;
 };
 
 static double clock_ms(const struct exercise *x, uint64_t world_us)
@@ -67,6 +70,12 @@ static int hear(void *ctx, struct lm_can_frame *frame)
         frame->time_us = d->world_us - d->on_us;
         d->part = (d->part + 1) % 3;
         d->told_us = d->part == 0 ? second_us : d->told_us;
+        return 1;
+    }
+    struct display *other = d->partner;
+    if (other && other->said_tail != other->said_head) {
+        *frame = other->said[other->said_tail++ % QUEUE];
+        frame->time_us = d->world_us - d->on_us;
         return 1;
     }
     if (d->is_half) {
@@ -354,5 +363,137 @@ TEST(silence_is_said_on_the_glass_and_nothing_jumps)
     assert_true(glass_find(&glass, "EXC", palette->warning, palette->ink, NULL));
     assert_int_equal(lm_fault_log_at(&p.a.r->unit.faults, 0)->flag, 12);
     fly_and_compare(&p, 30); /* both run on by their own clocks, which agree here */
+    end_pair(&p);
+}
+
+/* ---- two displays, one bus ---- */
+
+static int say(void *ctx, const struct lm_can_frame *frame)
+{
+    struct display *d = ctx;
+    assert_in_range(d->said_head - d->said_tail, 0, QUEUE - 1);
+    d->said[d->said_head++ % QUEUE] = *frame;
+    return LM_OK;
+}
+
+static void sit(struct display *d, struct display *partner, uint8_t node, uint8_t other)
+{
+    d->partner = partner;
+    d->r->board.lent.bus_node = node;
+    d->r->board.lent.bus_partner = other;
+    begin(d);
+    d->can.send = say;
+}
+
+/* Step by step, as on one bus. */
+static void fly_together(struct pair *p, double until_s)
+{
+    while (p->a.world_us < (uint64_t)(until_s * S)) {
+        const double next_s = (double)(p->a.world_us + STEP_US) / S;
+        fly(&p->a, next_s);
+        fly(&p->b, next_s);
+    }
+}
+
+static bool warns(const struct display *d, const char *words)
+{
+    const struct lm_surface glass = glass_of(d->r);
+    const struct lm_palette *palette = &d->r->unit.palette;
+    return glass_find(&glass, words, palette->warning, palette->ink, NULL);
+}
+
+static void choose(struct display *d, int mode, const struct lm_control *range, int gain_db)
+{
+    command(d->r, (struct lm_control){.kind = LM_CONTROL_SECTOR, .sector = {.mode = mode}});
+    command(d->r, *range);
+    command(d->r, (struct lm_control){.kind = LM_CONTROL_GAIN, .gain_db = gain_db});
+}
+
+static void begin_two(struct pair *p)
+{
+    static const struct lm_control range_20 = {.kind = LM_CONTROL_RANGE, .range_nm = 20};
+    p->a = switch_on(&plain, 0, 1);
+    p->b = switch_on(&plain, 0, 2);
+    sit(&p->a, &p->b, 20, 21);
+    sit(&p->b, &p->a, 21, 20);
+    choose(&p->a, LM_SECTOR_GM, &range_10, -3);
+    choose(&p->b, LM_SECTOR_SEA, &range_20, 4);
+    fly_together(p, 5);
+    command(p->b.r, lm_control_button(true, 15)); /* SWAP */
+    command(p->b.r, lm_control_button(false, 15));
+    fly_together(p, 5.2);
+    assert_int_equal(p->a.r->unit.page.mode, LM_SECTOR_SEA);
+    assert_int_equal(p->b.r->unit.page.mode, LM_SECTOR_GM);
+    assert_int_equal(p->b.r->unit.page.gain_db, -3);
+}
+
+/* The second display stops, and starts again with the settings that its board kept. */
+static void restart_second(struct pair *p, double off_s, struct lm_settings *kept)
+{
+    lm_settings_give(&p->b.r->unit, kept);
+    const uint64_t now_us = p->a.world_us + (uint64_t)(off_s * S);
+    free_rig(p->b.r);
+    fly(&p->a, (double)now_us / S);
+    p->b = switch_on(&plain, (double)now_us / S, 3);
+    p->b.r->board.lent.settings = kept;
+    sit(&p->b, &p->a, 21, 20);
+}
+
+TEST(a_display_that_restarts_says_so_and_shows_the_same_as_the_one_that_did_not)
+{
+    struct pair p;
+    struct lm_settings kept;
+    begin_two(&p);
+    choose(&p.a, LM_SECTOR_GM, &range_10, -3); /* as the other one, which restarts */
+    fly_together(&p, 9);
+    const struct lm_page before = p.b.r->unit.page;
+    const struct lm_position cursor = p.b.r->unit.cursor.position;
+    restart_second(&p, 1.3, &kept);
+    assert_memory_equal(&p.b.r->unit.page.format, &before.format, LM_PAGE_BYTES);
+    fly_together(&p, 11.5);
+    assert_true(warns(&p.b, "RESTART") && !warns(&p.a, "RESTART"));
+    assert_memory_equal(&p.b.r->unit.cursor.position, &cursor, sizeof cursor);
+    fly_together(&p, 22);
+    assert_false(warns(&p.b, "RESTART"));
+    for (uint32_t i = 0; i < 20; i++) {
+        assert_same(&p.a, &p.b);
+        fly_together(&p, 22.5 + i * 0.5);
+    }
+    command(p.b.r, lm_control_button(true, 15)); /* and the two still exchange pages */
+    fly_together(&p, 33);
+    assert_int_equal(p.a.r->unit.count.swaps, 2);
+    assert_int_equal(p.b.r->unit.count.swaps, 1);
+    end_pair(&p);
+}
+
+TEST(settings_that_are_damaged_are_not_taken)
+{
+    struct pair p;
+    struct lm_settings kept;
+    begin_two(&p);
+    lm_settings_give(&p.b.r->unit, &kept);
+    kept.page[2] = LM_SECTOR_MODES;
+    p.b.r->board.lent.settings = &kept;
+    assert_int_equal(lm_unit_init(&p.b.r->unit, &p.b.r->board.lent), LM_OK);
+    assert_false(p.b.r->unit.is_restored);
+    assert_int_equal(p.b.r->unit.page.mode, LM_SECTOR_GM);
+    assert_int_equal(p.b.r->unit.page.gain_db, 0);
+    end_pair(&p);
+}
+
+/* A patch showed a moment that is gone. */
+TEST(a_patch_does_not_outlive_a_restart_but_its_cursor_does)
+{
+    struct pair p;
+    struct lm_settings kept;
+    begin_two(&p);
+    command(p.b.r, patch_here);
+    fly_together(&p, 8);
+    assert_int_equal(p.b.r->unit.page.picture, LM_PICTURE_PATCH);
+    restart_second(&p, 0.5, &kept);
+    fly_together(&p, 10);
+    assert_int_equal(p.b.r->unit.page.picture, LM_PICTURE_SECTOR);
+    assert_int_equal(p.b.r->unit.page.cell_mm, p.b.r->board.lent.settings->cell_mm);
+    assert_memory_equal(&p.b.r->unit.cursor.position, &kept.cursor, sizeof kept.cursor);
     end_pair(&p);
 }

@@ -1,0 +1,134 @@
+#include "settings_file.h"
+
+#include "fx/crc32c.h"
+#include "report.h"
+
+#include <errno.h>
+#include <fcntl.h>
+#include <stdio.h>
+#include <string.h>
+#include <time.h>
+#include <unistd.h>
+
+static const char magic[8] = "LMSETTG1";
+
+enum { REST_NS = 100000000 };
+
+static void seal(const struct lm_settings *s, uint8_t bytes[SETTINGS_FILE_BYTES])
+{
+    memcpy(bytes, magic, sizeof magic);
+    memcpy(bytes + sizeof magic, s, sizeof *s);
+    const uint32_t crc = fx_crc32c(0, bytes, SETTINGS_FILE_BYTES - 4);
+    for (uint32_t i = 0; i < 4; i++) {
+        bytes[SETTINGS_FILE_BYTES - 4 + i] = (uint8_t)(crc >> 8 * i);
+    }
+}
+
+const struct lm_settings *settings_file_read(struct settings_file *f, const char *path)
+{
+    uint8_t bytes[SETTINGS_FILE_BYTES + 1], sealed[SETTINGS_FILE_BYTES];
+    memset(f, 0, sizeof *f);
+    f->path = path;
+    atomic_flag_clear(&f->is_taken);
+    const int fd = path[0] != '\0' ? open(path, O_RDONLY | O_CLOEXEC) : -1;
+    if (fd < 0) {
+        if (path[0] != '\0' && errno != ENOENT) {
+            report(REPORT_ERROR, "settings: %s: %s", path, strerror(errno));
+        }
+        return NULL;
+    }
+    const ssize_t length = read(fd, bytes, sizeof bytes);
+    close(fd);
+    memcpy(&f->settings, bytes + sizeof magic, sizeof f->settings);
+    seal(&f->settings, sealed);
+    if (length != SETTINGS_FILE_BYTES || memcmp(bytes, sealed, sizeof sealed) != 0) {
+        report(REPORT_ERROR, "settings: %s: damaged; the panel begins as after power-up", path);
+        return NULL;
+    }
+    return &f->settings;
+}
+
+/* 0 or errno. */
+static int write_new(const char *path, const uint8_t *bytes)
+{
+    const int fd = open(path, O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0640);
+    if (fd < 0) {
+        return errno;
+    }
+    const bool is_whole = write(fd, bytes, SETTINGS_FILE_BYTES) == SETTINGS_FILE_BYTES;
+    const int cause = is_whole && fdatasync(fd) == 0 ? 0 : errno != 0 ? errno : EIO;
+    close(fd);
+    return cause;
+}
+
+static void write_file(struct settings_file *f, const struct lm_settings *s)
+{
+    char new_path[160];
+    uint8_t bytes[SETTINGS_FILE_BYTES];
+    snprintf(new_path, sizeof new_path, "%s.new", f->path);
+    seal(s, bytes);
+    errno = 0;
+    int cause = write_new(new_path, bytes);
+    if (cause == 0 && rename(new_path, f->path) != 0) {
+        cause = errno;
+    }
+    if (cause != 0) {
+        report(REPORT_ERROR, "settings: %s: %s; a restart will have those of before", f->path,
+               strerror(cause));
+    }
+    f->written += cause == 0;
+}
+
+static void *keep_writing(void *ctx)
+{
+    struct settings_file *f = ctx;
+    struct lm_settings last = f->settings, now;
+    for (bool is_last = false; !is_last;) {
+        is_last = atomic_load(&f->is_closing);
+        const struct timespec rest = {.tv_nsec = REST_NS};
+        if (!atomic_load(&f->has_news) || atomic_flag_test_and_set(&f->is_taken)) {
+            (void)nanosleep(&rest, NULL);
+            continue;
+        }
+        now = f->handed;
+        atomic_store(&f->has_news, false);
+        atomic_flag_clear(&f->is_taken);
+        if (memcmp(&now, &last, sizeof now) != 0) {
+            write_file(f, &now);
+            last = now;
+        }
+    }
+    return NULL;
+}
+
+void settings_file_start(struct settings_file *f)
+{
+    if (f->path == NULL || f->path[0] == '\0') {
+        return;
+    }
+    const int cause = pthread_create(&f->thread, NULL, keep_writing, f);
+    f->has_thread = cause == 0;
+    if (cause != 0) {
+        report(REPORT_ERROR, "settings: no thread to write them: %s", strerror(cause));
+    }
+}
+
+void settings_file_keep(struct settings_file *f, const struct lm_unit *unit, uint64_t now_us)
+{
+    if (!f->has_thread || now_us < f->next_us || atomic_flag_test_and_set(&f->is_taken)) {
+        return;
+    }
+    lm_settings_give(unit, &f->handed);
+    atomic_store(&f->has_news, true);
+    atomic_flag_clear(&f->is_taken);
+    f->next_us = now_us + SETTINGS_KEPT_US;
+}
+
+void settings_file_close(struct settings_file *f)
+{
+    if (f->has_thread) {
+        atomic_store(&f->is_closing, true);
+        (void)pthread_join(f->thread, NULL);
+        f->has_thread = false;
+    }
+}
