@@ -10,3 +10,18 @@ PROGRAMS += $(DIS_GLASS)
 $(O)/tests/bench/dis_glass.o: CFLAGS_host += -Ihost-sim/dis
 $(DIS_GLASS): $(O)/tests/bench/dis_glass.o $(LIB_support) $(call host_archives,dis lib firmware fixed drivers)
 $(DIS_GLASS): LDLIBS := $(call host_links,dis) -lcmocka
+
+# make soak: an hour of a full bus with two displays, in some minutes; make check flies half a minute of it.
+SOAK := $(O)/bin/tests/bench/soak
+SOAK_S ?= 3600
+PROGRAMS += $(SOAK)
+$(SOAK): $(O)/tests/bench/soak.o $(LIB_support) $(LIB_hs) $(LIB_firmware) $(LIB_fixed)
+$(SOAK): LDLIBS := -lcmocka -lpng -lm
+TESTS += $(O)/bin/tests/bench/test_soak
+$(O)/bin/tests/bench/test_soak: tests/bench/test_soak.sh $(SOAK)
+	@mkdir -p $(@D)
+	@cp $< $@
+	@chmod +x $@
+.PHONY: soak
+soak: $(SOAK) ## Two displays for an hour on a bus that is never idle: nothing may be lost (SOAK_S=3600)
+	@$(SOAK) $(SOAK_S)
