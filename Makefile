@@ -29,7 +29,7 @@ $(call archive, $(LIB_support), $(wildcard tests/support/*.c))
 make_board = env $(patsubst %,-u %,MAKEFLAGS MAKEOVERRIDES CC OPT OPT_core LDFLAGS) $(MAKE) --no-print-directory -j2 BOARD=$(1)
 
 .PHONY: help deps all run check check-clang check-panel panel package bench gallery fuzz rooms lint format clean
-.PHONY: web zcu102 run-zcu102 size bench-zcu102 coverage figures
+.PHONY: cuts web zcu102 run-zcu102 size bench-zcu102 coverage figures
 
 help: ## Print this menu
 	@echo 'landmass: make TARGET'
@@ -81,6 +81,10 @@ gallery: deps ## Fly the real data of ../shared/data and leave the pictures in b
 
 fuzz: deps ## Fuzz every parser for FOR seconds each (FOR=60); `make check` replays seeds and random damage
 	@sh tests/fuzz/fuzz.sh $(or $(FOR),60)
+
+cuts: $(O)/bin/tests/unit/host-sim/slots/test_cuts $(O)/bin/tests/unit/host-sim/slots/test_kills ## Cut the power of 30,000 loads of a database (LANDMASS_SEED=1), and kill 1,000 more
+	@LANDMASS_CUTS=30000 $< 'no_cut*'
+	@BUILD=$(O) LANDMASS_KILLS=1000 $(O)/bin/tests/unit/host-sim/slots/test_kills
 
 web: deps ## The display as a page: build/web/site, which any web server with byte ranges serves
 	@$(MAKE) --no-print-directory -j2 BOARD=web all

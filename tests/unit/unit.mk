@@ -60,6 +60,7 @@ $(call unit_tests, host-sim/tracer,             tracer lib fixed firmware,      
 $(call unit_tests, host-sim/netem,              netem tracer lib fixed firmware)
 $(call unit_tests, host-sim/nav,                nav lib fixed firmware drivers,       nav)
 $(call unit_tests, host-sim/bus,                bus lib fixed firmware drivers)
+$(call unit_tests, host-sim/slots,              slots lib fixed firmware drivers)
 $(call unit_tests, host-sim/dis,                dis lib fixed firmware drivers,       dis,      proj)
 $(call unit_tests, host-sim/ios,                ios image lib fixed firmware drivers)
 $(call unit_tests, host-sim/scene,              scene lib)
@@ -119,11 +120,15 @@ $(eval $(call unit_script,host-sim/package/test_package.sh))
 $(eval $(call unit_script,host-sim/programs/bus/test_forms.py))
 $(eval $(call unit_script,host-sim/programs/dis/test_dis.py))
 $(eval $(call unit_script,host-sim/programs/json/test_json.py))
+$(eval $(call unit_script,host-sim/slots/test_kills.py))
+$(eval $(call unit_script,host-sim/slots/test_plants.sh))
 $(eval $(call unit_script,host-sim/programs/nav/test_nav_live.py))
 $(eval $(call unit_script,host-sim/programs/progress/test_progress.py))
 $(UNIT)/bsp/panel-linux/test_package: $(PANEL) $(wildcard bsp/panel-linux/debian/*)
 $(UNIT)/host-sim/package/test_package: $(PROGRAMS) $(O)/ios/.made $(wildcard host-sim/package/*)
 $(UNIT)/host-sim/programs/dis/test_dis: | $(O)/bin/landmass-dis
 $(UNIT)/host-sim/programs/nav/test_nav_live: | $(O)/bin/landmass-nav
+$(UNIT)/host-sim/slots/test_kills: | $(addprefix $(O)/bin/landmass-,load db scene)
+$(UNIT)/host-sim/slots/test_plants: | $(UNIT)/host-sim/slots/test_cuts
 $(UNIT)/host-sim/programs/json/test_json $(UNIT)/host-sim/programs/progress/test_progress: | $(HOST_TOOLS)
 $(UNIT)/host-sim/programs/bus/test_forms: | $(O)/bin/landmass-bus $(GEN)/bin/bus_table

@@ -736,6 +736,48 @@ def radar_record():
     writes_only("radar", "record", here("my.radar"), here("my.record"))
 
 
+SLOTS = ["--slot-a", os.path.join(WORK, "slot-a"), "--slot-b", os.path.join(WORK, "slot-b")]
+
+
+def load_put():
+    document, text = run("load", "put", here("image.lmdb"), *SLOTS)
+    r = document["report"]
+    load, written, kept = find(r"^slot A: load (\d+), (\d+) bytes written, (\d+) were there;", text)
+    assert (r["load"], r["written_bytes"], r["kept_bytes"]) == (load, written, kept)
+    assert r["slot"] == here("slot-a") and r["is_there_already"] is False and r["bad_blocks"] == 0
+    assert r["image_bytes"] == os.path.getsize(here("image.lmdb")) == written + kept
+    document, text = run("load", "put", here("image.lmdb"), *SLOTS)
+    assert document["report"]["is_there_already"] is True and "already" in text
+    document, _ = run("load", "put", here("damaged.lmdb"), *SLOTS, code=1)
+    assert "nothing was written" in document["messages"][-1]["remedy"] and document["files"] == []
+
+
+def slots_of(command):
+    document, text = run("load", command, *SLOTS)
+    a, b = document["report"]["slots"]
+    load, size, title = find(r"^slot A: \S+: whole, load (\d+), (\d+) bytes, (.*); flown next$", text)
+    assert (a["state"], a["load"], a["image_bytes"], '"%s"' % a["title"]) == ("whole", load, size, title), a
+    assert a["is_flown_next"] is True and a["cause"] is None and a["path"] == here("slot-a")
+    assert (b["state"], b["is_flown_next"], b["title"]) == ("absent", False, None) and "No such file" in b["cause"]
+
+
+def load_show():
+    slots_of("show")
+
+
+def load_verify():
+    slots_of("verify")
+    with open(here("slot-a"), "r+b") as file:
+        file.seek(os.path.getsize(here("image.lmdb")) // 2)
+        byte = file.read(1)
+        file.seek(-1, os.SEEK_CUR)
+        file.write(bytes([byte[0] ^ 1]))
+    document, text = run("load", "verify", *SLOTS, code=1)
+    a = document["report"]["slots"][0]
+    (offset,) = re.findall(r"^slot A: \S+: damaged, offset (\S+): ", text, re.M)
+    assert a["state"] == "damaged" and a["cause_offset_bytes"] == int(offset, 16) and a["cause"] in text
+
+
 class Skip(Exception):
     pass
 
@@ -818,6 +860,7 @@ CHECKS = {"db import": db_import, "db train": db_train, "db segment": db_segment
           "db picture": db_picture, "scene": scene, "nav": nav, "dis": dis, "ios": ios, "bus decode": bus_decode, "bus fields": bus_fields,
           "bus table": bus_table, "bus dbc": bus_dbc, "bus filters": bus_filters, "bus reports": bus_reports,
           "bus controls": bus_controls, "sim": sim,
+          "load put": load_put, "load show": load_show, "load verify": load_verify,
           "radar print": radar_print, "radar check": radar_check, "radar record": radar_record,
           "reference sar": reference("sar"), "reference gm": reference("gm"), "reference sector": reference("sector"),
           "figures figure1": figures("figure1"), "figures table1": figures("table1"), "tables fixed": tables("fixed"),

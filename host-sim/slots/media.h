@@ -1,0 +1,18 @@
+/* The kinds of media. Each opens `path`, or returns an errno with nothing open; ENOTTY: not of this
+ * kind. `*fd` is a descriptor to lock. The medium owns its context. */
+#ifndef SLOTS_MEDIA_H
+#define SLOTS_MEDIA_H
+
+#include "slots/medium.h"
+#include "slots/slot.h"
+
+int slot_medium_mtd(struct slot_medium *m, const char *path, enum slot_use use, int *fd);
+
+/* A file, or a block device. */
+int slot_medium_file(struct slot_medium *m, const char *path, enum slot_use use, int *fd);
+
+/* Read or write all of it. 0 or an errno. */
+int slot_read_whole(int fd, void *to, uint32_t length, uint64_t from);
+int slot_write_whole(int fd, const void *from, uint32_t length, uint64_t to);
+
+#endif

@@ -1,0 +1,81 @@
+/* A slot of any bytes: its two records, and the image in it. The first byte of the input says which
+ * checksums are put right. What is whole at the greater depth is whole at the lesser. */
+#include "fuzz.h"
+#include "lm/image.h"
+#include "seal.h"
+#include "slots/slot.h"
+
+#include <errno.h>
+
+const uint32_t fuzz_mutations = 20000;
+
+struct slot_bytes {
+    struct lm_slot_record copies[LM_SLOT_COPIES];
+    uint8_t *image;
+    size_t size;
+};
+
+static int read_image(void *ctx, uint64_t offset, void *to, uint32_t length)
+{
+    const struct slot_bytes *b = ctx;
+    if (offset > b->size || length > b->size - offset) {
+        return EIO;
+    }
+    memcpy(to, b->image + offset, length);
+    return 0;
+}
+
+static int read_record(void *ctx, uint32_t copy, struct lm_slot_record *record)
+{
+    const struct slot_bytes *b = ctx;
+    *record = b->copies[copy];
+    return 0;
+}
+
+/* Beside those of enum seal_part: both records are sealed; the first is made for the image. */
+enum { SEAL_RECORD = 16, MAKE_RECORD = 32 };
+
+static void fill(struct slot_bytes *b, struct fuzz_supply *s, uint8_t parts)
+{
+    for (int i = 0; i < LM_SLOT_COPIES; i++) {
+        const size_t bytes = s->left < sizeof b->copies[i] ? s->left : sizeof b->copies[i];
+        memcpy(&b->copies[i], s->at, bytes);
+        s->at += bytes;
+        s->left -= bytes;
+        if (parts & SEAL_RECORD) {
+            lm_slot_seal(&b->copies[i]);
+        }
+    }
+    memcpy(b->image, s->at, s->left);
+    b->size = s->left;
+    seal_image(b->image, b->size, parts);
+    struct lm_image_header header;
+    if ((parts & MAKE_RECORD) && b->size >= sizeof header) {
+        memcpy(&header, b->image, sizeof header);
+        b->copies[0].state = LM_SLOT_WHOLE;
+        b->copies[0].image_bytes = header.image_bytes;
+        b->copies[0].image_crc = header.crc;
+        lm_slot_seal(&b->copies[0]);
+    }
+}
+
+int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
+{
+    struct fuzz_supply supply = {data, size};
+    const uint8_t parts = fuzz_u8(&supply);
+    struct slot_bytes bytes = {.image = malloc(supply.left + 1)};
+    struct slot slots[LM_SLOTS];
+    FUZZ_ASSERT(bytes.image);
+    fill(&bytes, &supply, parts);
+    const struct slot_medium medium = {
+        .ctx = &bytes, .unit_bytes = 4096, .read = read_image, .read_record = read_record};
+    for (int i = 0; i < LM_SLOTS; i++) {
+        slot_lend(&slots[i], "slot", &medium);
+        slot_judge(&slots[i], i == 0 ? SLOT_RECORDS : SLOT_TABLES, NULL, NULL);
+        FUZZ_ASSERT(slots[i].verdict != SLOT_DAMAGED || slots[i].fault.cause[0] != '\0');
+    }
+    FUZZ_ASSERT(slots[0].verdict != SLOT_WHOLE || slots[1].verdict == SLOT_WHOLE);
+    (void)slot_choose(slots);
+    free(bytes.image);
+    return 0;
+}
