@@ -206,24 +206,11 @@ void lm_receiver_pulse(const struct lm_receiver *r, uint32_t *power_q24)
     }
 }
 
-/* Powers that saturate stay below 2^32. */
-static inline uint32_t faded_q24(uint32_t power_q24, uint32_t speckle_q24)
-{
-    const uint64_t product = (uint64_t)power_q24 * speckle_q24 >> 24;
-    return product < UINT32_MAX ? (uint32_t)product : UINT32_MAX;
-}
-
 void lm_receiver_fade(const struct lm_receiver *r, uint32_t floor_q24,
                       const uint32_t *restrict speckle_q24, uint32_t *restrict power_q24)
 {
-    const uint32_t most_q24 = UINT32_MAX - floor_q24;
-    for (uint32_t i = 0; i < r->hole; i++) {
-        power_q24[i] = faded_q24(power_q24[i], speckle_q24[i]);
-    }
-    for (uint32_t i = r->hole; i < r->cells; i++) {
-        const uint32_t filled_q24 = fx_min_u32(power_q24[i], most_q24) + floor_q24;
-        power_q24[i] = faded_q24(filled_q24, speckle_q24[i]);
-    }
+    const struct lm_k_fade fade = {speckle_q24, floor_q24, r->hole};
+    lm_k_fade(&fade, power_q24, r->cells);
 }
 
 void lm_receiver_join(const struct lm_receiver *r, const uint32_t *restrict steady_q24,

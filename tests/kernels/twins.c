@@ -509,6 +509,20 @@ static void run_beam_sum(const struct input *in, struct output *out, bool is_pla
     out->room = in->cells;
 }
 
+static void draw_fade(struct input *in)
+{
+    draw_powers(in);
+    in->number[0] = (int32_t)any_size(in);
+}
+
+static void run_fade(const struct input *in, struct output *out, bool is_plain)
+{
+    const struct lm_k_fade fade = {in->power_q24[1], (uint32_t)in->number[0],
+                                   in->entry[0] % (in->cells + 1)};
+    memcpy(out->line[0], in->power_q24[0], sizeof out->line[0]);
+    TWIN(lm_k_fade)(&fade, out->line[0], in->cells);
+}
+
 static struct lm_k_receiver receiver_of(const struct input *in)
 {
     return (struct lm_k_receiver){in->level_db_q8, in->fall_db_q8, in->number[0], row_of(in),
@@ -596,6 +610,7 @@ static const struct kernel kernels[] = {
     {"lm_k_highest", draw_levels, run_highest},
     {"lm_k_side_lobes", draw_levels, run_side_lobes},
     {"lm_k_beam_sum", draw_powers, run_beam_sum},
+    {"lm_k_fade", draw_fade, run_fade},
     {"lm_k_detect", draw_powers, run_detect},
     {"lm_k_detect_in_rain", draw_powers, run_detect_in_rain},
     {"lm_k_tone", draw_tone, run_tone},
