@@ -142,11 +142,14 @@ class Campaign:
         return None
 
     def _judge(self, mutant, target, place):
+        """The result; None where the time is up before it is known."""
         verdict = self.judged.get((mutant.source, flat(mutant.old), flat(mutant.new)))
         if verdict:
             return Result(mutant, verdict, "", 0)
         tests = self.build.programs_of(mutant.source)
         for number, test in enumerate(tests, 1):
+            if time.monotonic() >= self.ends:
+                return None
             is_sanitized, with_object = self.build.is_sanitized(test), target
             if is_sanitized:
                 with_object = self.build.compile(mutant.source, mutant.text, True, place / "changed")
@@ -167,15 +170,15 @@ class Campaign:
                     return
                 result = self._judge(*found, place)
                 with self.print_lock:
-                    self.results.append(result)
-                    tell(result)
+                    self.results.extend([result] if result else [])
+                    tell(result or Result(found[0], "unfinished", "", 0))
         except BaseException as failure:  # also SystemExit: the other workers must end, too
             self.failure = failure
 
 
 def tell(result):
     m = result.mutant
-    print(f"{result.verdict:9}  {m.source}:{m.line} ({m.kind}, {result.programs} tests)  {result.by}"[:160], flush=True)
+    print(f"{result.verdict:10}  {m.source}:{m.line} ({m.kind}, {result.programs} tests)  {result.by}"[:160], flush=True)
     if result.verdict == "survived":
         print(diff(m), flush=True)
 
