@@ -44,7 +44,11 @@ struct config_stick {
 
 /* Values of the options. An empty name means none, or the driver's choice. */
 struct config {
-    char database[CONFIG_PATH], radar[CONFIG_PATH];
+    char database[CONFIG_PATH];
+    char database_key[CONFIG_PATH], database_serial[CONFIG_PATH];
+    uint32_t database_trust; /* 1: any */
+    uint32_t database_older; /* 1: fly */
+    char radar[CONFIG_PATH];
     char can[CONFIG_NAME];
     const struct lm_bus_profile *can_profile; /* NULL: can_table, the database's, or canas17 */
     char can_table[CONFIG_PATH];

@@ -21,6 +21,20 @@ const struct config_row config_table[] = {
     OPTION(CONFIG_PATH_TO, database, 0, ROOM(database), NULL, "database", "PATH",
            "/var/lib/landmass-panel/database.lmdb",
            "The database in flash: a file, or an MTD device such as /dev/mtd0."),
+    OPTION(CONFIG_PATH_TO, database_key, 0, ROOM(database_key), "none", "database.key",
+           "PATH | none", "none",
+           "Public keys of those who may sign the database, up to eight in a PEM file."),
+    OPTION(
+        CONFIG_CHOICE, database_trust, 0, 0, "signed any", "database.trust", "signed | any",
+        "signed",
+        "Which database is flown: one that is signed by a key of database.key, or any, over which "
+        "the glass then says UNSIGNED. One whose signature does not fit is never flown."),
+    OPTION(CONFIG_CHOICE, database_older, 0, 0, "refuse fly", "database.older", "refuse | fly",
+           "refuse",
+           "What is done with a signed database whose serial number is below one that was flown."),
+    OPTION(CONFIG_PATH_TO, database_serial, 0, ROOM(database_serial), "none", "database.serial",
+           "PATH | none", "/var/lib/landmass-panel/serial",
+           "File that remembers the highest serial number flown. none: it is not remembered."),
     OPTION(
         CONFIG_PATH_TO, radar, 0, ROOM(radar), "none", "radar", "PATH | none", "none",
         "Table of the radar, a record that landmass-radar wrote. none: the database's, or the "

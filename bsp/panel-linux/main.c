@@ -1,5 +1,6 @@
 /* landmass-panel: the display unit's firmware as an installed cockpit panel. */
 #include "config.h"
+#include "database.h"
 #include "panel.h"
 #include "report.h"
 
@@ -25,7 +26,9 @@ static const char help[] =
     "Run the display unit's firmware on this machine's bus, keys, hand controller and glass.\n"
     "\n"
     "  --config FILE  the configuration (default /etc/landmass-panel.conf)\n"
-    "  --check        read the configuration, report what is wrong with it, and end\n"
+    "  --check        read the configuration and check the database's signature, report what is "
+    "wrong, and\n"
+    "                 end\n"
     "  --options      print every option of the configuration with its default\n"
     "  --version      print the version\n"
     "  -h, --help     this text\n"
@@ -141,7 +144,7 @@ static bool are_files_sound(const struct config *config)
     for (size_t i = 0; i < 2; i++) {
         is_sound = (paths[i][0] == '\0' || bus_table_load(&table, paths[i]) == 0) && is_sound;
     }
-    return is_sound;
+    return database_check(config) && is_sound;
 }
 
 int main(int argc, char **argv)

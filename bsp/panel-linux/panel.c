@@ -57,6 +57,10 @@ static const struct lm_flash *open_flash(struct panel *p)
     if (slow == NULL) {
         return &drv_no_flash;
     }
+    p->database = database_judge(p->config, slow, false);
+    if (!p->database.is_flown) {
+        return &drv_no_flash;
+    }
     const int cause = drv_flash_reader_start(&p->flash, slow);
     if (cause != 0) {
         report(REPORT_ERROR, "flash: no thread to read it: %s", strerror(cause));
@@ -205,6 +209,7 @@ static int start_unit(struct panel *p, const struct lm_flash *flash)
         .is_heading_magnetic = p->config->can_heading != 0,
         .tells_reports = p->config->can_reports != 0,
         .obeys_controls = p->config->can_controls != 0,
+        .is_database_unsigned = p->database.is_unsigned,
         .controls = &p->controls,
         .display = &p->glass.port,
         .tile_pool_bytes = p->config->tiles * sizeof(struct lm_tile),

@@ -7,6 +7,7 @@
 #include "bus.h"
 #include "bus/table_text.h"
 #include "config.h"
+#include "database.h"
 #include "display.h"
 #include "drv/flash_file.h"
 #include "drv/flash_mtd.h"
@@ -28,6 +29,7 @@ struct panel {
     struct drv_flash_file file;
     struct drv_flash_mtd mtd;
     struct drv_flash_reader flash;
+    struct database database;
     struct bus bus, bus_2;
     struct glass glass;
     struct bezel bezel;

@@ -87,8 +87,8 @@ struct record_head {
     uint32_t tile_slots, glass_step_px, noise_seed, flash_poll_limit;
     uint32_t node, hardware_revision;
     uint32_t switches; /* bits: magnetic, reports, obeys, whole, heading, strobe, borders,
-                          knows_profile, has a second interface; from bit 16 on the
-                          partner's node */
+                          knows_profile, has a second interface, unsigned database; from
+                          bit 16 on the partner's node */
     char restart[24];  /* "-": none */
     char build[16];    /* record_build of the program that recorded */
     /* Not words of the head, but lines below it. */
@@ -99,7 +99,12 @@ struct record_head {
 };
 
 /* Of the switches. */
-enum { RECORD_HAS_TABLE = 1u << 7, RECORD_HAS_SECOND = 1u << 8, RECORD_PARTNER_BIT = 16 };
+enum {
+    RECORD_HAS_TABLE = 1u << 7,
+    RECORD_HAS_SECOND = 1u << 8,
+    RECORD_IS_UNSIGNED = 1u << 9,
+    RECORD_PARTNER_BIT = 16
+};
 
 /* Recorder; the caller owns it, and it must not move while the unit runs. */
 struct recorder {

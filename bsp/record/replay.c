@@ -525,6 +525,7 @@ static void set_board(struct replay *p, struct lm_board *board)
                                                .has_heading = (s >> 4 & 1) != 0,
                                                .has_strobe = (s >> 5 & 1) != 0,
                                                .has_borders = (s >> 6 & 1) != 0};
+    board->is_database_unsigned = (s & RECORD_IS_UNSIGNED) != 0;
     board->glass_step_px = h->glass_step_px;
     board->noise_seed = h->noise_seed;
     board->flash_poll_limit = h->flash_poll_limit;

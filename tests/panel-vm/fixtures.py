@@ -53,11 +53,27 @@ def lines_of(path):
         return text.read().splitlines()
 
 
-def database(name):
-    """A database; its path."""
-    path = os.path.join(WORK, name + ".lmdb")
+def public_key():
+    """The key that databases are signed by; the path of its public half."""
+    secret, public = os.path.join(WORK, "signing.pem"), os.path.join(WORK, "public.pem")
     os.makedirs(WORK, exist_ok=True)
-    subprocess.run([os.path.join(HOST, "tests/system/test_sim_tool"), DATABASES[name], path], check=True)
+    if not os.path.exists(public):
+        subprocess.run(["openssl", "genpkey", "-algorithm", "ed25519", "-out", secret], check=True)
+        subprocess.run(["openssl", "pkey", "-in", secret, "-pubout", "-out", public], check=True)
+    return public
+
+
+def database(name):
+    """A database; its path. The sound one is signed."""
+    path = os.path.join(WORK, name + ".lmdb")
+    plain = os.path.join(WORK, name + "-plain.lmdb")
+    public_key()
+    subprocess.run([os.path.join(HOST, "tests/system/test_sim_tool"), DATABASES[name], plain], check=True)
+    if name == "broken":
+        os.replace(plain, path)
+    else:
+        subprocess.run([os.path.join(HOST, "landmass-db"), "sign", "--key", os.path.join(WORK, "signing.pem"), "--serial", "1",
+                        plain, path], check=True, stdout=subprocess.DEVNULL)
     return path
 
 

@@ -12,8 +12,8 @@ PANEL_VM_TESTS := $(addprefix $(PANEL_VM)/,test_bus test_panel test_flash test_t
 ifeq ($(BOARD),bench-linux)
 TESTS += $(PANEL_VM_TESTS)
 endif
-$(PANEL_VM_TESTS): $(PANEL_VM)/%: tests/panel-vm/%.py $(PANEL_VM)/glass $(O)/bin/landmass-sim $(O)/bin/landmass-nav \
-    $(O)/bin/tests/system/test_sim_tool $(O)/bin/landmass-dis | $(if $(filter build/$(BOARD),$(O)),panel-vm-guest)
+$(PANEL_VM_TESTS): $(PANEL_VM)/%: tests/panel-vm/%.py $(PANEL_VM)/glass $(addprefix $(O)/bin/landmass-,sim nav db dis) \
+    $(O)/bin/tests/system/test_sim_tool | $(if $(filter build/$(BOARD),$(O)),panel-vm-guest)
 	@mkdir -p $(@D)
 	@printf '#!/bin/sh\nexec python3 -B %s "$$@"\n' $< >$@
 	@chmod +x $@

@@ -13,7 +13,8 @@ SECTOR = ["80", "100", "460", "280"]  # X Y WIDTH HEIGHT of the radar picture, w
 with open(os.path.join(os.path.dirname(os.path.abspath(__file__)), "gpio-lines.txt"), encoding="utf-8") as lines:
     GPIO = [line.strip() for line in lines if not line.startswith("#")]
 RELEASED, PRESSED = 1, 0  # as the configuration has it by default: keys draw their lines to ground
-SETTINGS = {"database": "/t/small.lmdb", "can": "vcan0", "glass.picture": "%dx%d" % (WIDTH, HEIGHT)}
+SETTINGS = {"database": "/t/small.lmdb", "database.key": "/t/public.pem", "database.serial": "/tmp/serial",
+            "can": "vcan0", "glass.picture": "%dx%d" % (WIDTH, HEIGHT)}
 BEZEL = {"key.7": "OSB7", "key.12": "OSB12", "key.13": "OSB13", "key.14": "OSB14", "key.19": "OSB19",
          "key.designate": "DESIGNATE", "led.fault": "LED-FAULT", "led.alive": "LED-ALIVE"}
 

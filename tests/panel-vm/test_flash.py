@@ -3,7 +3,7 @@
 import os
 
 from cases import case, expect, main
-from fixtures import database, log, tree
+from fixtures import database, log, public_key, tree
 from machine import Machine
 from panel import Panel, fly, is_fine
 
@@ -12,7 +12,7 @@ CHIP = "id_bytes=0x20,0xa2,0x00,0x15 parts=128"  # NAND of 64 MiB, its first 16 
 
 
 def boot():
-    return Machine("amd64", tree=tree(files=[log("still"), database("small")], arch="amd64"),
+    return Machine("amd64", tree=tree(files=[log("still"), database("small"), public_key()], arch="amd64"),
                    devices=["-device", "virtio-gpu-pci,xres=640,yres=480"])
 
 

@@ -5,7 +5,7 @@ import re
 import subprocess
 
 from cases import case, expect, main
-from fixtures import HOST, WORK, busy_log, counters, database, lines_of, log, tree
+from fixtures import HOST, WORK, busy_log, counters, database, lines_of, log, public_key, tree
 from machine import Machine
 from panel import (GPIO, HEIGHT, PRESSED, RELEASED, Panel, bench, differences, fly, in_flight, is_fine, is_flagged,
                    is_removed, land, strangers)
@@ -24,7 +24,8 @@ MODULES = "can_raw vcan virtio-gpu xhci-pci i6300esb dummy_hcd libcomposite usb_
 
 
 def boot():
-    files = [log("still"), log("flight"), busy_log(lines_of(log("flight"))[:1400]), database("small"), database("broken")]
+    files = [log("still"), log("flight"), busy_log(lines_of(log("flight"))[:1400]), database("small"), database("broken"),
+             public_key()]
     return Machine(tree=tree("can_probe", "count_malloc.so", files=files), devices=DEVICES)
 
 
@@ -40,6 +41,7 @@ def prepare(m):
 def delivered(m):
     m.do("ip link add can0 type vcan && ip link set can0 up")
     m.do("mkdir -p /var/lib/landmass-panel && ln -s /t/small.lmdb /var/lib/landmass-panel/database.lmdb")
+    m.do("echo database.key = /t/public.pem >>/etc/landmass-panel.conf")
     p = Panel(m, delivered=True)
     p.until(lambda text: is_removed(text) and "BUS" in text)
     (wanted,) = bench("delivered", "still", "14 picture dead\n", seconds=15, size=(HEIGHT, HEIGHT))
@@ -208,8 +210,8 @@ def bad_database(m):
 @case("damaged records are told on the glass while the picture goes on")
 def damaged_records(m):
     fly(m)
-    p = Panel(m, database="/t/broken.lmdb")
-    p.until(lambda text: "TILE" in text and not is_removed(text))
+    p = Panel(m, database="/t/broken.lmdb", database__trust="any")
+    p.until(lambda text: "TILE" in text and "UNSIGNED" in text and not is_removed(text))
     expect(p.is_alive(), "the display stands")
 
 

@@ -27,10 +27,10 @@ $(LANDSAT_TEST): tests/system/test_real_infrared.py $(O)/bin/landmass-db
 	@printf '#!/bin/sh\nexec $${PYTHON:-/usr/bin/python3} -B tests/system/test_real_infrared.py\n' >$@
 	@chmod +x $@
 
-# Signed images, judged by openssl and hashlib.
-SIGN_TEST := $(O)/bin/tests/system/test_sign
-TESTS += $(SIGN_TEST)
-$(SIGN_TEST): tests/system/test_sign.py $(O)/bin/landmass-db
+# Signed images, judged by openssl and hashlib, and what a panel does with them.
+SIGN_TESTS := $(addprefix $(O)/bin/tests/system/,test_sign test_panel_trust)
+TESTS += $(SIGN_TESTS)
+$(SIGN_TESTS): $(O)/bin/tests/system/%: tests/system/%.py $(O)/bin/landmass-db $(PANEL)
 	@mkdir -p $(@D)
-	@printf '#!/bin/sh\nexec $${PYTHON:-/usr/bin/python3} -B tests/system/test_sign.py\n' >$@
+	@printf '#!/bin/sh\nexec $${PYTHON:-/usr/bin/python3} -B %s "$$@"\n' '$<' >$@
 	@chmod +x $@

@@ -48,6 +48,7 @@ for library in $("${OBJDUMP:-objdump}" -p "$program" | sed -n 's/^ *NEEDED *//p'
     libusb-1.0.so.0) depends="$depends, libusb-1.0-0 (>= 2:1.0.16)" ;;
     libgpiod.so.2) depends="$depends, libgpiod2 (>= 1.5)" ;;
     libgpiod.so.3) depends="$depends, libgpiod3" ;;
+    libcrypto.so.3) depends="$depends, libssl3" ;;
     libc.so.6 | libm.so.6 | ld-linux*) ;;
     *) echo "package: which Debian package has $library? Tell build.sh" >&2 && exit 1 ;;
     esac

@@ -36,9 +36,10 @@ enum lm_flag {
     LM_FLAG_SENDER = 1 << 13,   /* a sender of the bus is stuck, has a rival, or is contradicted */
     LM_FLAG_MALFUNCTION = 1 << 14, /* the exercise has broken something: not written over the
                                       picture */
-    LM_FLAG_RESTART = 1 << 15      /* the display has restarted, with the settings of before */
+    LM_FLAG_RESTART = 1 << 15,     /* the display has restarted, with the settings of before */
+    LM_FLAG_UNSIGNED = 1 << 16     /* the board does not know who made the database */
 };
-enum { LM_FLAGS = 16 };
+enum { LM_FLAGS = 17 };
 
 /* The word of flag `number`, 0..LM_FLAGS - 1, which is the number of its bit: at most eight
  * characters, in static memory. */

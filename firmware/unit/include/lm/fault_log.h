@@ -8,8 +8,8 @@
 
 /* The flags that are faults. Those that follow from what the operator switches or asks for are not:
  * LM_FLAG_FROZEN, LM_FLAG_SILENT, LM_FLAG_UNABLE. Nor is what an exercise breaks:
- * LM_FLAG_MALFUNCTION; nor a restart, whose cause the BIT page has. A board that lights a lamp
- * derives its set from this one. */
+ * LM_FLAG_MALFUNCTION; nor a restart, whose cause the BIT page has; nor what the owner allows:
+ * LM_FLAG_UNSIGNED. A board that lights a lamp derives its set from this one. */
 enum {
     LM_FLAGS_FAULT = LM_FLAG_NAV_STALE  /* the ownship's data are stale */
                      | LM_FLAG_NAV_DEAD /* the ownship's data are dead */

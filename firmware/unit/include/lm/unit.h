@@ -80,6 +80,7 @@ struct lm_board {
     bool tells_reports;        /* it also tells lm/canas_report.h and lm/canas_control.h; without
                                   a node it does not */
     bool obeys_controls;       /* of the bus: lm/canas_control.h */
+    bool is_database_unsigned; /* the board does not know who made it: LM_FLAG_UNSIGNED */
     uint8_t hardware_revision; /* told on the bus on request */
     const struct lm_controls *controls;
     const struct lm_display *display;

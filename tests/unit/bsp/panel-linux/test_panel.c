@@ -67,6 +67,8 @@ static struct config nothing_fitted(void)
     c.priority = 0;
     c.locks_memory = 0;
     c.glass_picture = (struct config_size){WIDTH, HEIGHT};
+    c.database_trust = 1; /* any */
+    c.database_serial[0] = '\0';
     snprintf(c.database, sizeof c.database, "/nowhere/database.lmdb");
     return c;
 }

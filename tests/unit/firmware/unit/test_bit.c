@@ -1,6 +1,7 @@
 /* The rows of the BIT page that tell of the database and of the faults that stand. The rows of
  * counters are read off the glass in test_page. */
 #include "check.h"
+#include "glass_text.h"
 #include "lm/bit.h"
 #include "lm/overlay.h"
 #include "unit_rig.h"
@@ -44,6 +45,7 @@ TEST(row_now_names_each_standing_fault)
         {LM_FLAG_UNABLE, "NOW  UNABLE"},
         {LM_FLAG_WEATHER, "NOW  WX"},
         {LM_FLAG_EXERCISE, "NOW  EXC"},
+        {LM_FLAG_UNSIGNED, "NOW  UNSIGNED"},
         {LM_FLAG_NAV_DEAD | LM_FLAG_BUS | LM_FLAG_WEATHER, "NOW  NAV FAIL  BUS  WX"},
     };
     struct rig *r = start_rig();
@@ -52,4 +54,29 @@ TEST(row_now_names_each_standing_fault)
         assert_string_equal(lm_bit_row(&r->unit, ROW_NOW).words, rows[i].words);
     }
     free_rig(r);
+}
+
+static bool says_unsigned(bool is_unsigned)
+{
+    struct rig *r = make_rig();
+    r->board.lent.is_database_unsigned = is_unsigned;
+    assert_int_equal(lm_unit_init(&r->unit, &r->board.lent), LM_OK);
+    run(r, 1);
+    const struct lm_surface glass = glass_of(r);
+    const bool is_on_glass =
+        glass_find(&glass, "UNSIGNED", r->unit.palette.warning, r->unit.palette.ink, NULL);
+    assert_int_equal(is_on_glass, (r->unit.flags & LM_FLAG_UNSIGNED) != 0);
+    for (uint32_t age = 0; lm_fault_log_at(&r->unit.faults, age); age++) {
+        assert_string_not_equal(lm_flag_word(lm_fault_log_at(&r->unit.faults, age)->flag),
+                                "UNSIGNED");
+    }
+    free_rig(r);
+    return is_on_glass;
+}
+
+/* It is no fault: the owner of the board allowed it. */
+TEST(the_glass_says_that_nobody_signed_the_database_if_the_board_says_so)
+{
+    assert_true(says_unsigned(true));
+    assert_false(says_unsigned(false));
 }
