@@ -121,7 +121,8 @@ static uint32_t switches_of(const struct lm_board *b)
 {
     const bool bits[] = {b->is_heading_magnetic,     b->tells_reports,       b->obeys_controls,
                          b->options.is_sector_whole, b->options.has_heading, b->options.has_strobe,
-                         b->options.has_borders,     b->bus_profile != NULL, b->can_2 != NULL, b->is_database_unsigned};
+                         b->options.has_borders,     b->bus_profile != NULL, b->can_2 != NULL,
+                         b->is_database_unsigned};
     uint32_t word = 0;
     for (uint32_t i = 0; i < sizeof bits / sizeof *bits; i++) {
         word |= (uint32_t)bits[i] << i;
