@@ -178,6 +178,40 @@ TEST(another_key_in_the_seal_does_not_make_the_signature_its)
     free(bytes);
 }
 
+/* What the table of sections says after a change, its checksums put right. */
+static void expect_cause(uint8_t *bytes, size_t size, const char *cause)
+{
+    struct trust_result r;
+    signed_repair(bytes);
+    assert_int_equal(signed_judge(bytes, size, "a.pub", &r), TRUST_BROKEN);
+    assert_string_equal(r.cause, cause);
+}
+
+TEST(sections_that_share_bytes_and_a_second_seal_are_named)
+{
+    size_t size;
+    uint8_t *bytes = signed_read("signed.lmdb", &size);
+    struct lm_image_section *s = (void *)(uintptr_t)signed_section(bytes, LM_IMAGE_RADAR);
+    const struct lm_image_section kept = *s;
+    const char *const place = "section RADAR lies outside the image or in another section";
+    s->offset = signed_section(bytes, LM_IMAGE_TILES)->offset;
+    expect_cause(bytes, size, "section TILES lies outside the image or in another section");
+    s->offset = LM_DB_HEADER_BYTES - 64;
+    expect_cause(bytes, size, place);
+    s->offset = UINT64_MAX;
+    expect_cause(bytes, size, place);
+    *s = kept;
+    s->bytes = size;
+    expect_cause(bytes, size, place);
+    s->bytes = kept.bytes + 64;
+    expect_cause(bytes, size, "section BUS lies outside the image or in another section");
+    *s = kept;
+    const struct lm_image_section *last = signed_section(bytes, 77);
+    ((struct lm_image_section *)(uintptr_t)last)->type = LM_IMAGE_SEAL;
+    expect_cause(bytes, size, "there is more than one section SEAL");
+    free(bytes);
+}
+
 TEST(signing_again_replaces_the_seal)
 {
     struct trust_signer signer;
