@@ -10,7 +10,8 @@ $(O)/bsp/panel-linux/%.o $(O)/sanitized/bsp/panel-linux/%.o: EXTRA_CFLAGS := \
 PANEL := $(O)/bin/landmass-panel
 PROGRAMS += $(PANEL)
 $(PANEL): $(O)/bsp/panel-linux/main.o $(PANEL_READER) $(LIB_panel) $(LIB_record) $(LIB_drivers) $(LIB_firmware) $(LIB_fixed)
-$(PANEL): LDLIBS = $(LINUX_LIBS) $(call pkgs,libs,libcrypto)
+PANEL_LIBS = $(LINUX_LIBS) $(call pkgs,libs,libcrypto)
+$(PANEL): LDLIBS = $(PANEL_LIBS)
 
 .PHONY: panel-program panel-package
 panel-package: $(PANEL)

@@ -1,9 +1,9 @@
 # A panel that flies, the server, and the pages of both: what a page shows is what that panel's glass got.
 ifeq ($(BOARD),bench-linux)
-$(O)/tests/ios/virtual_panel.o: EXTRA_CFLAGS := -Ibsp/panel-linux -Ihost-sim/bus/include -Ihost-sim/lib/include
+$(O)/tests/ios/virtual_panel.o: EXTRA_CFLAGS := -Ibsp/panel-linux $(patsubst %,-Ihost-sim/%/include,bus lib trust)
 $(O)/bin/tests/ios/virtual_panel: $(O)/tests/ios/virtual_panel.o $(PANEL_READER) $(LIB_panel) $(LIB_record) $(LIB_drivers) \
     $(LIB_firmware) $(LIB_fixed)
-$(O)/bin/tests/ios/virtual_panel: LDLIBS = $(LINUX_LIBS)
+$(O)/bin/tests/ios/virtual_panel: LDLIBS = $(PANEL_LIBS)
 
 TESTS += $(O)/bin/tests/ios/test_panel_pages
 $(O)/bin/tests/ios/test_panel_pages: $(addprefix $(O)/bin/landmass-,ios nav) $(O)/bin/tests/ios/virtual_panel \

@@ -23,6 +23,8 @@ CONFIG = f"""database = {TMP}/scene.lmdb
 can = none
 can.controls = obey
 glass = none
+database.trust = any
+database.serial = none
 glass.picture = 512x512
 stick = none
 realtime.priority = 0
