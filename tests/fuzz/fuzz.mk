@@ -19,7 +19,8 @@ fuzz_target = $(eval $(call fuzz_rules,$(strip $(1)),$(strip $(2))))
 $(call fuzz_target, lz4,          lib firmware fixed)
 $(call fuzz_target, image,        lib firmware fixed)
 $(call fuzz_target, seal,         trust lib firmware fixed)
-$(O)/sanitized/tests/fuzz/fuzz_seal.o: EXTRA_CFLAGS := -Ihost-sim/trust
+$(call fuzz_target, key_file,     trust lib firmware fixed)
+$(O)/sanitized/tests/fuzz/fuzz_seal.o $(O)/sanitized/tests/fuzz/fuzz_key_file.o: EXTRA_CFLAGS := -Ihost-sim/trust
 $(call fuzz_target, targets,      lib firmware fixed)
 $(call fuzz_target, chips,        lib firmware fixed)
 $(call fuzz_target, radar_text,   radar lib firmware fixed)
