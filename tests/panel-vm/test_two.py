@@ -5,7 +5,7 @@ import struct
 import subprocess
 
 from cases import case, expect, main
-from fixtures import HOST, WORK, database, log, tree
+from fixtures import HOST, WORK, database, log, public_key, tree
 from machine import Machine
 from panel import GPIO, HEIGHT, PRESSED, RELEASED, WIDTH, Panel, fly, is_fine
 
@@ -45,7 +45,8 @@ class Seat(Panel):
 
     def __init__(self, machine, name, **settings):  # pylint: disable=super-init-not-called
         self.machine, self.name = machine, name
-        chosen = {"database": "/t/small.lmdb", "can": "vcan0", "glass.picture": "%dx%d" % (WIDTH, HEIGHT),
+        chosen = {"database": "/t/small.lmdb", "database.key": "/t/public.pem", "database.serial": "none",
+                  "can": "vcan0", "glass.picture": "%dx%d" % (WIDTH, HEIGHT),
                   "settings": "/tmp/%s.settings" % name, "record": "none"}
         chosen.update(settings)
         text = "".join("%s = %s\n" % item for item in chosen.items())
@@ -79,7 +80,7 @@ def is_in(mode):
 
 
 def boot():
-    return Machine(tree=tree(files=[log("still"), dis_log(), database("small")]), devices=DEVICES)
+    return Machine(tree=tree(files=[log("still"), dis_log(), database("small"), public_key()]), devices=DEVICES)
 
 
 def prepare(m):
