@@ -19,7 +19,7 @@ $(foreach r,$(ROOMS),$(eval $(O)/firmware/$r/%.o: ROOM := $r))
 # What has no loop over cells or pixels: a board that counts its bytes compiles it for size.
 WITHOUT_LOOPS := base/% table/% bus/% nav/% page/% unit/% map/db map/detail map/tile_cache \
     targets/chips targets/mover targets/signature targets/target targets/target_candidates targets/target_patch \
-    targets/chip_sector targets/chip_patch radar/patch_rain radar/sector radar/track radar/track_sight \
+    targets/chip_sector targets/chip_patch radar/patch_rain radar/beacon radar/sector radar/track radar/track_sight \
     display/test_pattern display/symbols display/overlay display/view display/cursor
 $(foreach f,$(WITHOUT_LOOPS),$(eval $(O)/firmware/$f.o: OPT_core := $(OPT_rest)))
 $(foreach f,$(UNROLLED),$(eval $(O)/$f.o: OPT_core += -funroll-loops))

@@ -72,7 +72,7 @@ double web_replay_step(void);
 /* Why the replay could not begin, or ended early; empty: it did not. */
 const char *web_replay_error(void);
 
-enum { WEB_MODE_PATCH = 3 };
+enum { WEB_MODE_PATCH = 4 };
 
 /* What a page may ask for; all are whole numbers. */
 enum web_value {

@@ -25,6 +25,7 @@ const struct lm_live_echo lm_live_echoes[LM_LIVE_KINDS] = {
     [LM_LIVE_LARGE_SHIP] = {43, 1},
     [LM_LIVE_STRUCTURE] = {20, 0},
     [LM_LIVE_REFLECTOR] = {30, 0},
+    [LM_LIVE_BEACON] = {0, 0},
 };
 
 static bool has_acceleration(uint8_t reckoning)

@@ -220,8 +220,8 @@ uint32_t lm_page_select_azimuth(struct lm_page *p, int32_t azimuth)
 
 uint32_t lm_page_select_sector(struct lm_page *p, int32_t mode, int32_t fov)
 {
-    if (!fx_is_within_i32(mode, 0, LM_SECTOR_MODES - 1) ||
-        !fx_is_within_i32(fov, 0, p->radar->mode[mode].fov_last) ||
+    if (!fx_is_within_i32(mode, 0, LM_SECTOR_CHOICES - 1) ||
+        !fx_is_within_i32(fov, 0, (int32_t)lm_radar_fov_last(p->radar, (uint32_t)mode)) ||
         p->range_index > lm_radar_range_last(p->radar, (uint32_t)mode, (uint32_t)fov)) {
         return 0;
     }

@@ -93,7 +93,7 @@ static uint32_t step_white(struct lm_page *p, int32_t step)
 
 static void label_gamma(const struct lm_page *p, struct lm_label *value)
 {
-    const uint32_t gamma_q8 = lm_page_tone(p, &p->radar->mode[p->mode].tone).gamma_q8;
+    const uint32_t gamma_q8 = lm_page_tone(p, &lm_radar_mode(p->radar, p->mode)->tone).gamma_q8;
     lm_label_tenths(value, "GAMMA", "", (gamma_q8 * 10u + 128u) / 256u);
 }
 

@@ -21,7 +21,7 @@ static bool is_sector(const struct lm_page *p)
 
 static void label_mode(const struct lm_page *p, struct lm_label *label)
 {
-    lm_label_set(label, p->radar->mode[p->mode].name, "");
+    lm_label_set(label, lm_radar_mode_name(p->radar, p->mode), "");
 }
 
 /* Select the next mode, with a field of view and a scale that it has. In a patch: return to the
@@ -31,8 +31,8 @@ static uint32_t press_mode(struct lm_page *p, int32_t step)
     if (!is_sector(p)) {
         return LM_EFFECT_SECTOR | LM_EFFECT_TONE;
     }
-    p->mode = (uint8_t)((p->mode + (uint32_t)step) % LM_SECTOR_MODES);
-    p->fov = p->fov > p->radar->mode[p->mode].fov_last ? (uint8_t)LM_FOV_NORM : p->fov;
+    p->mode = (uint8_t)((p->mode + (uint32_t)step) % LM_SECTOR_CHOICES);
+    p->fov = p->fov > lm_radar_fov_last(p->radar, p->mode) ? (uint8_t)LM_FOV_NORM : p->fov;
     return lm_page_fit_range(p) | LM_EFFECT_TONE;
 }
 
@@ -51,7 +51,8 @@ static uint32_t press_fov(struct lm_page *p, int32_t step)
     }
     for (uint32_t i = 0; i < LM_FOVS; i++) {
         p->fov = (uint8_t)((p->fov + (uint32_t)step) % LM_FOVS);
-        if (p->fov <= p->radar->mode[p->mode].fov_last && p->range_index <= lm_page_range_last(p)) {
+        if (p->fov <= lm_radar_fov_last(p->radar, p->mode) &&
+            p->range_index <= lm_page_range_last(p)) {
             break;
         }
     }

@@ -1,8 +1,10 @@
 #include "lm/sector.h"
 
+#include "fx/mem.h"
 #include "fx/root.h"
 #include "fx/sat.h"
 #include "fx/trig.h"
+#include "lm/beacon.h"
 #include "lm/chips.h"
 #include "lm/dbs.h"
 #include "lm/environment.h"
@@ -29,7 +31,12 @@ static const struct lm_fov_row *fov_of(const struct lm_sector *s)
 
 static const struct lm_sector_mode_row *mode_of(const struct lm_sector *s)
 {
-    return &s->radar->mode[s->command.mode];
+    return lm_radar_mode(s->radar, s->command.mode);
+}
+
+static bool is_for_beacons(const struct lm_sector *s)
+{
+    return s->command.mode == LM_SECTOR_BEACON;
 }
 
 static uint32_t rate_of(const struct lm_sector *s)
@@ -410,6 +417,7 @@ static void find_live(struct lm_sector *s, const struct lm_target_query *query, 
                                       .end_m_q8 =
                                           s->ground_edge_m_q8 + s->grid.cells * s->grid.cell_m_q8,
                                       .is_doppler = s->beam.fineness != 0,
+                                      .is_of_beacons = is_for_beacons(s),
                                       .speed_mm_s = s->platform.speed_mm_s,
                                       .track = s->platform.track,
                                       .beam = s->radar->antenna.azimuth_beam};
@@ -443,9 +451,23 @@ static void find_targets(struct lm_sector *s, struct lm_tile_cache *tiles, fx_ba
     lm_chips_choose(s->chips, &s->candidates, &chip_query);
 }
 
-/* Find the targets that the sample meets. False if there are none. */
+/* Replies of the beacons that the sample meets. */
+static void take_replies(struct lm_sector *s, const struct lm_line_targets *targets,
+                         struct lm_line *line, uint32_t *power_q24)
+{
+    const struct lm_beacon_sample sample = {.targets = targets,
+                                            .grid = &s->grid,
+                                            .slant = &s->slant,
+                                            .pattern = &s->pattern,
+                                            .fan = &s->fan,
+                                            .loss_db_q8 = s->receiver.loss_db_q8};
+    lm_beacon_sample(&sample, line, power_q24);
+}
+
+/* Find the targets that the sample meets. False if there are none. In beacon mode `replies_q24` is
+ * the slot that takes the replies; else NULL. */
 static bool add_targets(struct lm_sector *s, struct lm_tile_cache *tiles, fx_bam_t azimuth,
-                        struct lm_line *line)
+                        struct lm_line *line, uint32_t *replies_q24)
 {
     const struct lm_sector_mode_row *mode = mode_of(s);
     find_targets(s, tiles, azimuth);
@@ -472,6 +494,10 @@ static bool add_targets(struct lm_sector *s, struct lm_tile_cache *tiles, fx_bam
                   .scan = s->sweep,
                   .pulse = s->samples},
     };
+    if (replies_q24) {
+        take_replies(s, &targets, line, replies_q24);
+        return true;
+    }
     return lm_line_add_targets(line, &s->grid, &targets);
 }
 
@@ -533,6 +559,19 @@ static void follow(struct lm_sector *s)
     }
 }
 
+/* Take one sample in beacon mode: the ground hides, and does not answer. */
+static void interrogate(struct lm_sector *s, struct lm_tile_cache *tiles, int32_t sample,
+                        fx_bam_t azimuth, struct lm_line *line)
+{
+    uint32_t *replies_q24 = lm_beam_slot(&s->beam, sample);
+    memset(replies_q24, 0, s->slant.cells * sizeof *replies_q24);
+    if (s->targets && lm_target_set_has_any(s->targets)) {
+        trace(s, tiles, azimuth, line);
+        add_targets(s, tiles, azimuth, line, replies_q24);
+    }
+    s->samples++;
+}
+
 /* Take one sample, from the map to the power of the bins, into its slot of the ring. */
 static void take_sample(struct lm_sector *s, struct lm_tile_cache *tiles, int32_t sample,
                         struct lm_line *line)
@@ -544,9 +583,13 @@ static void take_sample(struct lm_sector *s, struct lm_tile_cache *tiles, int32_
     }
     follow(s);
     s->live.count = s->live.left_out = 0;
+    if (is_for_beacons(s)) {
+        interrogate(s, tiles, sample, azimuth, line);
+        return;
+    }
     trace_average(s, tiles, azimuth, line);
-    const bool has_steady =
-        s->targets && lm_target_set_has_any(s->targets) && add_targets(s, tiles, azimuth, line);
+    const bool has_steady = s->targets && lm_target_set_has_any(s->targets) &&
+                            add_targets(s, tiles, azimuth, line, NULL);
     lm_antenna_pattern_apply(&s->pattern, &s->fan, &s->grid, &line->lit);
     lm_slant_run(&s->slant, &s->grid, line->lit.level_db_q8, lm_beam_slot(&s->beam, sample));
     if (has_steady) {
@@ -679,6 +722,26 @@ static void sum_powers(struct lm_sector *s)
     }
 }
 
+/* Levels of the display line, behind the receiver. */
+static void detect(struct lm_sector *s)
+{
+    sum_powers(s);
+    const struct lm_weather *weather = NULL;
+    if (s->environment) {
+        lm_weather_line(&s->weather, s->environment, &s->receiver, s->radar, s->platform.position,
+                        s->up + s->look_off + (fx_bam_t)middle_of(s, s->line));
+        weather = &s->weather;
+    }
+    lm_receiver_run(&s->receiver, weather, s->line, s->sweep, s->power_q24, s->level_db_q8);
+}
+
+/* The same in beacon mode. What is not a reply does not pass: no noise, rain or jammer. */
+static void detect_replies(struct lm_sector *s)
+{
+    lm_beam_sum(&s->beam, &taps_of_line(s)->taps, s->power_q24, s->slant.cells);
+    lm_beacon_show(s->power_q24, s->slant.cells, mode_of(s)->tone.white_db_q8, s->level_db_q8);
+}
+
 uint32_t lm_sector_draw_line(struct lm_sector *s, struct lm_tile_cache *tiles,
                              const struct lm_platform *platform, const struct lm_tone *tone,
                              struct lm_line *line)
@@ -686,15 +749,11 @@ uint32_t lm_sector_draw_line(struct lm_sector *s, struct lm_tile_cache *tiles,
     uint32_t azimuths = UINT32_MAX;
     lm_sector_sample_ahead(s, tiles, platform, &azimuths, line);
     const uint32_t drawn = s->line, cells = s->slant.cells;
-    const int32_t azimuth = middle_of(s, drawn);
-    sum_powers(s);
-    const struct lm_weather *weather = NULL;
-    if (s->environment) {
-        lm_weather_line(&s->weather, s->environment, &s->receiver, s->radar, s->platform.position,
-                        s->up + s->look_off + (fx_bam_t)azimuth);
-        weather = &s->weather;
+    if (is_for_beacons(s)) {
+        detect_replies(s);
+    } else {
+        detect(s);
     }
-    lm_receiver_run(&s->receiver, weather, drawn, s->sweep, s->power_q24, s->level_db_q8);
     lm_tone_run(tone, s->level_db_q8, line->grey, cells);
     if (drawn % LINES_APART == 0) {
         prefetch(s, tiles);

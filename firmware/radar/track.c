@@ -87,7 +87,7 @@ static bool is_within_limits(const struct lm_track_scene *s, const struct lm_tra
 /* The gates of the mode, as the picture has them. */
 static bool is_in_gates(const struct lm_track_scene *s, const struct lm_track_seen *seen)
 {
-    const uint32_t *gate_mm_s = s->radar->mode[s->mode].gate_mm_s;
+    const uint32_t *gate_mm_s = lm_radar_mode(s->radar, s->mode)->gate_mm_s;
     const uint32_t closing_mm_s =
         fx_abs_u32(lm_mover_closing_mm_s(seen->speed_mm_s, seen->course, seen->bearing));
     const uint32_t least_mm_s = fx_max_u32(
@@ -136,7 +136,7 @@ static int32_t signal_db_q8_of(const struct lm_track_scene *s, enum lm_track_kin
     }
     int32_t point_db_q8 = rcs_dbsm_q8(s, candidate, seen) - floor.area_db_q8;
     if (kind == LM_TRACK_MOVER) {
-        const int32_t left_db_q8 = ground_db_q8 - s->radar->mode[s->mode].clutter_db_q8;
+        const int32_t left_db_q8 = ground_db_q8 - lm_radar_mode(s->radar, s->mode)->clutter_db_q8;
         against_db_q8 = fx_db_q8_sum_vec(against_db_q8, left_db_q8);
     } else {
         point_db_q8 = fx_db_q8_sum_vec(point_db_q8, ground_db_q8);

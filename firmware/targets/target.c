@@ -58,13 +58,14 @@ static bool motion_is_sound(const struct lm_target *t)
     return is_leg_sound && t->path_legs == 0 && t->path_is_round == 0;
 }
 
-/* Scatterers, a signature, or neither (a fluctuating point): not two of them. */
+/* Scatterers, a signature, or neither (a fluctuating point, a beacon): not two of them. */
 static bool kind_is_sound(const struct lm_target *t)
 {
-    const bool has_signature = (t->flags & LM_TARGET_HAS_SIGNATURE) != 0;
-    return t->scatterer_count <= LM_SCATTERERS_MAX &&
-           (has_signature ? t->scatterer_count == 0 && t->signature < LM_DB_SIGNATURES_MAX
-                          : t->signature == 0);
+    const uint32_t kind = t->flags & (LM_TARGET_HAS_SIGNATURE | LM_TARGET_IS_BEACON);
+    return kind == 0 ? t->scatterer_count <= LM_SCATTERERS_MAX && t->signature == 0
+                     : t->scatterer_count == 0 &&
+                           (kind == LM_TARGET_IS_BEACON || (kind == LM_TARGET_HAS_SIGNATURE &&
+                                                            t->signature < LM_DB_SIGNATURES_MAX));
 }
 
 int lm_target_check(const struct lm_target *t)

@@ -137,12 +137,14 @@ enum { LIVE_ID = 0x4c560000 };
 static struct lm_target_body body_of_live(const struct lm_target_set *set, uint32_t number)
 {
     const struct lm_live_target *t = &set->live->target[number];
+    const bool is_beacon = t->kind == LM_LIVE_BEACON;
     struct lm_target_body body = {.id = LIVE_ID + number,
                                   .mean_rcs_dbsm_q8 = t->rcs_dbsm_q8,
                                   .swerling = lm_live_echoes[t->kind].swerling,
-                                  .signature = (uint8_t)(t->signature - 1),
-                                  .flags = LM_TARGET_HAS_SIGNATURE};
-    if (lm_target_signature(set, &body) == NULL) {
+                                  .signature = (uint8_t)(t->signature - !is_beacon),
+                                  .flags =
+                                      is_beacon ? LM_TARGET_IS_BEACON : LM_TARGET_HAS_SIGNATURE};
+    if (!is_beacon && lm_target_signature(set, &body) == NULL) {
         body.signature = 0;
         body.flags = 0;
     }
@@ -364,7 +366,8 @@ void lm_target_candidates_of_line(struct lm_target_candidates *candidates,
     for (uint32_t i = 0; i < LM_LIVE_MAX; i++) {
         const struct lm_live_target *t = &set->live->target[i];
         struct rough r;
-        if (!t->is_there || !find_rough(&r, &plane, t, query->time_us)) {
+        if (!t->is_there || (line->is_of_beacons && t->kind != LM_LIVE_BEACON) ||
+            !find_rough(&r, &plane, t, query->time_us)) {
             continue;
         }
         const int64_t along_m_q8 = (r.north_m_q8 * cos_q15 + r.east_m_q8 * sin_q15) >> 15;

@@ -409,3 +409,29 @@ uint32_t lm_target_line_add(const struct lm_target_candidates *candidates,
     }
     return cells;
 }
+
+uint32_t lm_target_line_replies(const struct lm_target_candidates *candidates,
+                                const struct lm_target_line *line,
+                                const struct lm_target_horizon *horizon,
+                                struct lm_target_reply reply[LM_TARGET_CANDIDATES_MAX])
+{
+    uint32_t replies = 0;
+    for (uint32_t left = find_in_reach(candidates, line); left != 0; left &= left - 1) {
+        const struct lm_target_candidate *candidate = &candidates->candidate[fx_ctz64(left)];
+        struct apparent_position seen;
+        if ((candidate->body.flags & LM_TARGET_IS_BEACON) == 0 ||
+            !find_apparent(line, candidate, &seen)) {
+            continue;
+        }
+        const int32_t cell = lit_cell(line, horizon, candidate, &seen, 0);
+        if (cell != NO_CELL) { /* it is less than a width off */
+            const uint64_t near = line->width - off_line(line, &seen);
+            reply[replies++] =
+                (struct lm_target_reply){.range_m_q8 = seen.range_m_q8,
+                                         .cell = (uint32_t)cell,
+                                         .share_q24 = (uint32_t)((near << 24) / line->width),
+                                         .code = candidate->body.signature};
+        }
+    }
+    return replies;
+}

@@ -275,7 +275,7 @@ static struct lm_view view(const struct lm_picture *p)
 
 static const struct lm_tone_config *tone(const struct lm_picture *p)
 {
-    return &p->lent.radar->mode[p->lent.page->mode].tone;
+    return &lm_radar_mode(p->lent.radar, p->lent.page->mode)->tone;
 }
 
 /* Of the field of view that is swept. It differs from the page's while the cursor is awaited. */

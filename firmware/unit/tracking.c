@@ -40,7 +40,8 @@ static uint32_t side_m(const struct lm_unit *u)
 
 static bool is_for_movers(const struct lm_unit *u)
 {
-    return u->page.picture == LM_PICTURE_SECTOR && u->page.mode != LM_SECTOR_GM;
+    return u->page.picture == LM_PICTURE_SECTOR &&
+           (u->page.mode == LM_SECTOR_GMT || u->page.mode == LM_SECTOR_SEA);
 }
 
 enum lm_refusal lm_tracking_designate(struct lm_unit *u, uint64_t now_us)

@@ -25,7 +25,8 @@ static const char *const body_forms[LM_SHAPE_KINDS] = {
 
 static const char target_form[] =
     "target NAME LATITUDE LONGITUDE ELEVATION|ground[+HEIGHT] HEADING, then `scatterers`, "
-    "`swerling CASE DBSM` or `signature NAME`, then perhaps `moving SPEED LEG`, or `moving SPEED` "
+    "`swerling CASE DBSM` or `signature NAME` or `beacon CODE [LATE_US]`, then perhaps `moving "
+    "SPEED LEG`, or `moving SPEED` "
     "and lines `via LATITUDE LONGITUDE`";
 static const char via_form[] =
     "via LATITUDE LONGITUDE, behind a target without bodies that is `moving SPEED`";
@@ -93,6 +94,19 @@ static bool set_signature(struct lm_target *t, const struct build_signatures *si
     return number >= 0;
 }
 
+/* beacon CODE [LATE_US] */
+static bool set_beacon(struct lm_target *t, char *const *words, int count)
+{
+    double number[2] = {0};
+    if (count < 2 || count > 3 || !read_numbers(words + 1, count - 1, number, 0, 15) ||
+        number[0] != floor(number[0]) || number[1] != floor(number[1])) {
+        return false;
+    }
+    t->flags |= LM_TARGET_IS_BEACON;
+    t->signature = (uint8_t)((int)number[0] | (int)number[1] << 4);
+    return true;
+}
+
 /* Behind HEADING: what gives the target its return. */
 static bool set_kind(struct lm_target *t, const struct build_signatures *signatures,
                      char *const *words, int count)
@@ -103,6 +117,9 @@ static bool set_kind(struct lm_target *t, const struct build_signatures *signatu
     }
     if (count == 2 && strcmp(words[0], "signature") == 0) {
         return set_signature(t, signatures, words[1]);
+    }
+    if (strcmp(words[0], "beacon") == 0) {
+        return set_beacon(t, words, count);
     }
     if (count != 3 || strcmp(words[0], "swerling") != 0 ||
         !read_numbers(words + 1, 1, &number[0], 0, LM_TARGET_SWERLING_MAX) ||

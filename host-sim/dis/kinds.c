@@ -27,7 +27,8 @@ static const char *const names[DIS_TARGET_KINDS] = {"unknown",
                                                     "ship",
                                                     "large-ship",
                                                     "structure",
-                                                    "corner-reflector"};
+                                                    "corner-reflector",
+                                                    "beacon"};
 
 const char *dis_kind_name(uint8_t kind)
 {

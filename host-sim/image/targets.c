@@ -93,6 +93,10 @@ static void report_echo(const struct lm_target *t)
         hs_report_integer("signature", t->signature);
         return;
     }
+    if (t->flags & LM_TARGET_IS_BEACON) {
+        hs_report_integer("beacon", t->signature & 15);
+        hs_report_integer("late_us", t->signature >> 4);
+    }
     if (t->scatterer_count == 0) {
         hs_report_integer("swerling", t->swerling);
         hs_report_real("mean_rcs_dbsm", t->mean_rcs_dbsm_q8 / 256.0);
@@ -138,6 +142,8 @@ void image_targets_print(const struct image *image)
                image_degrees((int64_t)t->heading));
         if (t->flags & LM_TARGET_HAS_SIGNATURE) {
             printf("  signature %u", t->signature);
+        } else if (t->flags & LM_TARGET_IS_BEACON) {
+            printf("  beacon %d, %d us late", t->signature & 15, t->signature >> 4);
         } else if (t->scatterer_count == 0) {
             printf("  swerling %u, mean %.1f dBsm", t->swerling, t->mean_rcs_dbsm_q8 / 256.0);
         }

@@ -48,6 +48,21 @@ bool nav_live_add(struct nav_live *l, const double *value, int count)
     return true;
 }
 
+bool nav_live_add_beacon(struct nav_live *l, const double *value, int count)
+{
+    if (count < 4 || count > 6 || !is_whole(value[1], 16) ||
+        (count == 6 && !is_whole(value[5], 16))) {
+        return false;
+    }
+    const double target[] = {
+        value[0], NAV_LIVE_BEACON, value[2], value[3], 0, 0, count > 4 ? value[4] : -INFINITY};
+    if (!nav_live_add(l, target, 7)) {
+        return false;
+    }
+    l->item[l->count - 1].reply = (int)value[1] | (count == 6 ? (int)value[5] << 4 : 0);
+    return true;
+}
+
 /* Whether the moment falls into the minor frame. */
 static bool is_due(double at_s, double now_s, double period_s)
 {
@@ -155,8 +170,9 @@ static int put_set(const struct nav_live_item *t, uint8_t code, const struct sta
     /* A heading of 180 degrees is 32768, which is -32768 in 16 bits. */
     const double heading = remainder(s->course_deg, 360) / 180 * 32768;
     int n = 0;
-    frames[n++] = frame_of(CANAS_LIVE_KIND, CANAS_UCHAR4, t->number, code,
-                           (uint32_t)t->kind << 24 | RPB << 16 | (uint32_t)parts);
+    frames[n++] =
+        frame_of(CANAS_LIVE_KIND, CANAS_UCHAR4, t->number, code,
+                 (uint32_t)t->kind << 24 | RPB << 16 | (uint32_t)t->reply << 8 | (uint32_t)parts);
     frames[n++] = frame_of(CANAS_LIVE_LATITUDE, CANAS_LONG, t->number, code,
                            (uint32_t)(int32_t)lround(s->latitude_deg * 1e7));
     frames[n++] = frame_of(CANAS_LIVE_LONGITUDE, CANAS_LONG, t->number, code,

@@ -42,13 +42,15 @@ static int finish(const struct db_text_file *f, struct nav_live *l)
 
 static int begin_target(const struct db_text_file *f, struct nav_live *l, char **word, int words)
 {
-    double number, kind;
-    if (words != 3 || !hs_number_within(word[1], 0, NAV_LIVE_MAX - 1, &number) ||
+    double number, kind, reply = 0;
+    if (words < 3 || words > 4 || !hs_number_within(word[1], 0, NAV_LIVE_MAX - 1, &number) ||
         !hs_number_within(word[2], 0, NAV_LIVE_KINDS - 1, &kind) || number != floor(number) ||
-        kind != floor(kind)) {
-        return db_text_error(f, "write target 12 3",
+        kind != floor(kind) ||
+        (words == 4 && (!hs_number_within(word[3], 0, 255, &reply) || reply != floor(reply) ||
+                        kind != NAV_LIVE_BEACON))) {
+        return db_text_error(f, "write target 12 3, or of a beacon of code 5 target 12 17 5",
                              "a target has a number of 0..%d and a kind of "
-                             "0..%d",
+                             "0..%d, and a beacon a reply of 0..255",
                              NAV_LIVE_MAX - 1, NAV_LIVE_KINDS - 1);
     }
     for (int i = 0; i < l->count; i++) {
@@ -62,6 +64,7 @@ static int begin_target(const struct db_text_file *f, struct nav_live *l, char *
     }
     l->item[l->count++] = (struct nav_live_item){.number = (int)number,
                                                  .kind = (int)kind,
+                                                 .reply = (int)reply,
                                                  .first_point = l->point_count,
                                                  .until_s = INFINITY};
     return 0;

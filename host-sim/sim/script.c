@@ -98,7 +98,8 @@ static bool has_scale(const struct script *s, struct line_events *line)
         return true;
     }
     snprintf(line->refusal, sizeof line->refusal, "%s %s has no scale of %d nautical miles",
-             radar->mode[s->mode].name, radar->fov[s->field].name, (int)s->range_nm);
+             lm_radar_mode_name(radar, (uint32_t)s->mode), radar->fov[s->field].name,
+             (int)s->range_nm);
     return false;
 }
 
@@ -223,9 +224,9 @@ static bool parse_sector(struct script *s, char **words, int count, struct line_
     if (count > 3 || field < 0) {
         return false;
     }
-    if (field > radar->mode[mode].fov_last) {
-        snprintf(line->refusal, sizeof line->refusal, "%s has no %s", radar->mode[mode].name,
-                 radar->fov[field].name);
+    if (field > (int32_t)lm_radar_fov_last(radar, (uint32_t)mode)) {
+        snprintf(line->refusal, sizeof line->refusal, "%s has no %s",
+                 lm_radar_mode_name(radar, (uint32_t)mode), radar->fov[field].name);
         return false;
     }
     s->mode = mode;

@@ -18,7 +18,7 @@ import figures  # noqa: E402
 LINE_BUDGET_US = 3900  # a line of the fastest sweep, 256 of them in a second
 MIPS = 100
 # As bench.c numbers them: enum lm_sector_mode times enum lm_fov, and behind them the patches.
-SECTORS = [f"{mode} {field}" for mode in ("GM", "GMT", "SEA") for field in ("NORM", "EXP", "DBS1", "DBS2")]
+SECTORS = [f"{mode} {field}" for mode in ("GM", "GMT", "SEA", "BCN") for field in ("NORM", "EXP", "DBS1", "DBS2")]
 MODES = dict(enumerate(SECTORS + ["SAR patch", "SAR patch finer than the map"]))
 PATCH = len(SECTORS)
 FINER = PATCH + 1

@@ -31,7 +31,7 @@ const FPW = 2; // dead reckoning: straight on
 export const KINDS = ['unknown', 'person', 'car', 'truck', 'tracked vehicle', 'train', 'light aircraft', 'fighter',
     'large aircraft', 'helicopter', 'missile', 'boat', 'ship of 200 t', 'ship of 2,000 t', 'ship of 20,000 t',
         'structure',
-    'corner reflector'];
+    'corner reflector', 'radar beacon'];
 
 /* Malfunctions, in the order of their numbers: name, unit of the amount ('' has none), its range, and
  * what the page offers to begin with. */
@@ -46,7 +46,7 @@ export const MALFUNCTIONS = [['no transmitter', '', 0, 0, 0], ['weak transmitter
 export const FLAG_WORDS = ['NAV', 'NAV FAIL', 'DB FAIL', 'TILE', 'BUS', 'FZ', 'OFF MAP', 'NO RAD', 'UNABLE', 'WX',
     'BLW TERR',
     'MAG HDG', 'EXC', 'SENDER', 'MALF', 'RESTART'];
-export const MODES = ['GM', 'GMT', 'SEA'], FIELDS_OF_VIEW = ['NORM', 'EXP', 'DBS1', 'DBS2'];
+export const MODES = ['GM', 'GMT', 'SEA', 'BCN'], FIELDS_OF_VIEW = ['NORM', 'EXP', 'DBS1', 'DBS2'];
 export const PAGES = ['radar', 'CNTL', 'DCLT', 'BIT', 'test pattern'];
 export const SWITCHES = ['', 'designate', 'drop', 'freeze', 'release'];
 

@@ -62,6 +62,16 @@ static const char *take_jammer(void *context, const char *text)
                : "needs LAT,LON,DB[,FROM_S[,UNTIL_S]] with -20..80 dB, up to four times";
 }
 
+static const char *take_beacon(void *context, const char *text)
+{
+    struct command *c = context;
+    double v[6];
+    return nav_live_add_beacon(&c->send.live, v, hs_numbers(text, ',', v, 6))
+               ? NULL
+               : "needs NUMBER,CODE,LAT,LON[,HEIGHT_M[,LATE_US]] with a number of 0..255 that is "
+                 "not taken, a code of 0..15, up to 16000 m and whole microseconds of 0..15";
+}
+
 static const char *take_live(void *context, const char *text)
 {
     struct command *c = context;
@@ -69,7 +79,7 @@ static const char *take_live(void *context, const char *text)
     return nav_live_add(&c->send.live, v, hs_numbers(text, ',', v, 10))
                ? NULL
                : "needs NUMBER,KIND,LAT,LON,COURSE_DEG,SPEED_MS[,HEIGHT_M[,TURN_DEG_S[,FROM_S"
-                 "[,UNTIL_S]]]] with a number of 0..255 that is not taken, a kind of 0..16, up to "
+                 "[,UNTIL_S]]]] with a number of 0..255 that is not taken, a kind of 0..17, up to "
                  "1000 m/s, 16000 m and 60 deg/s";
 }
 
@@ -138,8 +148,8 @@ static bool read_table(struct command *c, struct raw *raw, int argc, char **argv
                     rain = {take_rain, c}, jammer = {take_jammer, c},
                     bind = {hs_take_address, &c->bind}, can = {hs_take_interface, &c->can},
                     from = {hs_take_address, &c->from}, ask = {hs_take_address, &c->ask},
-                    live = {take_live, c}, exercise_rate = {take_exercise_rate, c},
-                    malfunction = {take_malfunction, c};
+                    live = {take_live, c}, beacon = {take_beacon, c},
+                    exercise_rate = {take_exercise_rate, c}, malfunction = {take_malfunction, c};
     const struct hs_option options[] = {
         {"TRACK", HS_INPUT_ARGUMENT, &c->track_path, 0, 0, NULL,
          "a .csv, .gpx, .igc, .kml or .kmz file, plain or .gz; - is standard input", false},
@@ -219,6 +229,11 @@ static bool read_table(struct command *c, struct raw *raw, int argc, char **argv
          "tell of a live target once a second: it begins there, goes straight on or turns, at a "
          "height above mean sea level, or on the ground where that is left out or below -1000, "
          "and is removed at UNTIL_S; kinds are those of docs/bus.md; up to 256",
+         false},
+        {"beacon", HS_TAKER, &beacon, 0, 0, "NUMBER,CODE,LAT,LON[,HEIGHT_M[,LATE_US]]",
+         "tell of a radar beacon that stands there, likewise, with a number that no other target "
+         "has: it answers the beacon mode with a code of 0..15, and perhaps 0..15 microseconds "
+         "late",
          false},
         {"live-routes", HS_INPUT, &c->live_path, 0, 0, "FILE",
          "tell of the live targets of a file, each with places on its way and when it is there or "

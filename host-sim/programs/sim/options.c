@@ -17,7 +17,7 @@ static const struct hs_usage usage = {
 
 static const char script_help[] =
     "A script has one command a line, each with its time; '#' begins a remark:\n"
-    "  SECONDS gm|gmt|sea [norm|exp|dbs1|dbs2]    mode and field of view (dbs: gm only)\n"
+    "  SECONDS gm|gmt|sea|bcn [norm|exp|dbs1|dbs2]    mode and field of view (dbs: gm only)\n"
     "  SECONDS range 10|20|40|80                  nautical miles: a scale of the radar in use\n"
     "  SECONDS azimuth 60|30|10                   degrees to each side\n"
     "  SECONDS gain DB | freeze on|off            -30..30 dB\n"

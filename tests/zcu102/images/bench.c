@@ -18,7 +18,7 @@ void instrument_nothing(void)
 {
 }
 
-_Static_assert(LM_SECTOR_MODES *LM_FOVS + 1 < INSTRUMENT_MODES,
+_Static_assert(LM_SECTOR_CHOICES *LM_FOVS + 1 < INSTRUMENT_MODES,
                "a sum for each mode and both patches");
 
 /* What changes in the steady sweep is composed in one step, or in two or three with many lines. */
@@ -46,7 +46,7 @@ static void add(struct instrument_sum *sum, uint64_t spent)
  * patch of cells finer than the map. */
 static uint32_t mode_of(const struct lm_unit *unit)
 {
-    const uint32_t patch = LM_SECTOR_MODES * LM_FOVS;
+    const uint32_t patch = LM_SECTOR_CHOICES * LM_FOVS;
     return unit->page.picture == LM_PICTURE_PATCH
                ? patch + unit->picture.sar.blend.is_on
                : (uint32_t)unit->page.mode * LM_FOVS + unit->page.fov;

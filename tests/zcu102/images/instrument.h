@@ -6,7 +6,7 @@
 
 #include <stdint.h>
 
-enum { INSTRUMENT_STAGES_MAX = 40, INSTRUMENT_MODES = 16 };
+enum { INSTRUMENT_STAGES_MAX = 40, INSTRUMENT_MODES = 20 };
 
 struct instrument_sum {
     uint64_t instructions;

@@ -43,6 +43,7 @@ enum lm_live_kind {
     LM_LIVE_LARGE_SHIP,
     LM_LIVE_STRUCTURE,
     LM_LIVE_REFLECTOR,
+    LM_LIVE_BEACON,
     LM_LIVE_KINDS
 };
 
@@ -81,7 +82,7 @@ struct lm_live_target {
     int16_t rcs_dbsm_q8;     /* mean cross section */
     uint8_t kind;            /* below LM_LIVE_KINDS */
     uint8_t reckoning;       /* below LM_LIVE_RECKONINGS */
-    uint8_t signature;       /* of the image, counted from 1; 0: none */
+    uint8_t signature;       /* of the image, counted from 1; 0: none; of a beacon, its reply */
     uint8_t node;            /* sender */
     bool is_there, has_height;
 };

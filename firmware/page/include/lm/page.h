@@ -102,8 +102,8 @@ uint32_t lm_page_step_range(struct lm_page *p, int32_t step);
  * - select_range: the nautical miles of a scale that mode and field of view have. It ends the
  *   automatic range;
  * - select_azimuth: 0..LM_AZIMUTHS - 1;
- * - select_sector: mode 0..LM_SECTOR_MODES - 1, field of view 0..fov_last of that mode, which both
- * have the present range scale;
+ * - select_sector: mode 0..LM_SECTOR_CHOICES - 1, field of view 0..fov_last of that mode, which
+ * both have the present range scale;
  * - set_gain: -LM_GAIN_MAX_DB..LM_GAIN_MAX_DB;
  * - set_knob: -LM_FULL_DEFLECTION..LM_FULL_DEFLECTION. */
 uint32_t lm_page_select_range(struct lm_page *p, int32_t range_nm);

@@ -109,8 +109,16 @@ enum lm_picture_kind {
     LM_PICTURES
 };
 
-/* Mode of the sector: what it shows. */
-enum lm_sector_mode { LM_SECTOR_GM, LM_SECTOR_GMT, LM_SECTOR_SEA, LM_SECTOR_MODES };
+/* Mode of the sector: what it shows. A table has a row for each but the last: the beacon mode
+ * sweeps as the first one does. */
+enum lm_sector_mode {
+    LM_SECTOR_GM,
+    LM_SECTOR_GMT,
+    LM_SECTOR_SEA,
+    LM_SECTOR_MODES, /* rows of the table */
+    LM_SECTOR_BEACON = LM_SECTOR_MODES,
+    LM_SECTOR_CHOICES /* modes that can be selected */
+};
 
 /* Field of view: the whole sector or a window around the cursor, and how sharp it is. */
 enum lm_fov { LM_FOV_NORM, LM_FOV_EXP, LM_FOV_DBS1, LM_FOV_DBS2, LM_FOVS };
@@ -228,6 +236,18 @@ struct lm_radar {
 };
 
 extern const struct lm_radar lm_radar_default;
+
+/* Row of a mode that can be selected. */
+static inline const struct lm_sector_mode_row *lm_radar_mode(const struct lm_radar *radar,
+                                                             uint32_t mode)
+{
+    return &radar->mode[mode < LM_SECTOR_MODES ? mode : LM_SECTOR_GM];
+}
+
+/* Its name, "BCN" of the beacon mode, and the last field of view that it has: replies of beacons
+ * are not coherent, and nothing sharpens them. */
+const char *lm_radar_mode_name(const struct lm_radar *radar, uint32_t mode);
+uint32_t lm_radar_fov_last(const struct lm_radar *radar, uint32_t mode);
 
 /* Index of the scale of so many nautical miles, of the mode or field of view of that name (in
  * either case), and of the sector of so many degrees to each side; -1 when the table has none. */

@@ -40,7 +40,8 @@ enum {
     LM_TARGET_ABOVE_GROUND = 1,
     LM_TARGET_HAS_SIGNATURE = 2,
     LM_TARGET_HAS_PATH = 4,
-    LM_TARGET_FLAGS = 7
+    LM_TARGET_IS_BEACON = 8,
+    LM_TARGET_FLAGS = 15
 };
 
 /* Scatterer: one reflecting body of a target. Its boresight points to azimuth (from forward towards
@@ -81,7 +82,8 @@ struct lm_target {
     };
     uint32_t speed_mm_s; /* along heading or path; 0: the target stands still */
     uint32_t leg_m; /* along the heading, 1..LM_TARGET_LEG_MAX_M; 0 with a path or without speed */
-    uint8_t signature; /* index in the image, if flagged (it has no scatterers then); else 0 */
+    uint8_t signature; /* index in the image, if flagged (it has no scatterers then); of a beacon,
+                          which is a point, its reply (lm/beacon.h); else 0 */
     uint8_t path_legs; /* with a path 1..LM_TARGET_LEGS_MAX, a speed and no scatterers; else 0 */
     uint8_t path_is_round; /* 1: the path ends at its start and is flown round and round; else 0 */
     uint8_t reserved[5];

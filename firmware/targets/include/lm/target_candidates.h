@@ -110,6 +110,7 @@ struct lm_live_line {
     fx_bam_t azimuth, width;       /* of the line, as in lm/target_line.h */
     uint32_t begin_m_q8, end_m_q8; /* of its cells */
     bool is_doppler;
+    bool is_of_beacons;  /* none but beacons appear on it */
     uint32_t speed_mm_s; /* of the antenna over the ground */
     fx_bam_t track, beam;
 };

@@ -9,9 +9,9 @@
  *
  * A field is a number, a range or *; what is left out behind is any. The first rule that fits an
  * entity decides. Words: `kind NAME`; `rcs DBSM` (-40..60) in place of the kind's; `signature N`,
- * the N-th of the display's image (1..255); `ground` or `height`, whether the target stands on the
- * map's surface or at the height that the entity tells; `skip`: no target. Without a word for it,
- * entities of domain 1 and 3, land and surface, stand on the ground. */
+ * the N-th of the display's image (1..255), or the reply of a beacon; `ground` or `height`, whether
+ * the target stands on the map's surface or at the height that the entity tells; `skip`: no target.
+ * Without a word for it, entities of domain 1 and 3, land and surface, stand on the ground. */
 #ifndef DIS_KINDS_H
 #define DIS_KINDS_H
 
@@ -20,11 +20,11 @@
 #include <math.h>
 #include <stdio.h>
 
-enum { DIS_RULES_MAX = 1024, DIS_RULE_FIELDS = 7, DIS_TARGET_KINDS = 17 };
+enum { DIS_RULES_MAX = 1024, DIS_RULE_FIELDS = 7, DIS_TARGET_KINDS = 18 };
 
 /* What an entity becomes. */
 struct dis_kind {
-    uint8_t kind;      /* number of the bus, 0..16: dis_kind_name */
+    uint8_t kind;      /* number of the bus, 0..17: dis_kind_name */
     uint8_t signature; /* 0: none */
     double rcs_dbsm;   /* NAN: that of the kind */
     bool is_skipped, is_on_ground;

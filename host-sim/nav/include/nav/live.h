@@ -9,7 +9,8 @@
 enum {
     NAV_LIVE_MAX = 256,
     NAV_LIVE_FRAMES = 6,
-    NAV_LIVE_KINDS = 17,
+    NAV_LIVE_KINDS = 18,
+    NAV_LIVE_BEACON = 17,
     NAV_LIVE_POINTS = 4096, /* of all routes */
     NAV_LIVE_SPEED_MOST_MS = 1000
 };
@@ -24,6 +25,7 @@ struct nav_live_point {
  * `from_s` until before `until_s`, seconds from the log's beginning, and then removed. */
 struct nav_live_item {
     int number, kind;
+    int reply; /* of a beacon: its code, and 16 times its delay in microseconds; else 0 */
     double latitude_deg, longitude_deg; /* at from_s */
     double course_deg, speed_ms;
     double height_m; /* above mean sea level; below -1000: on the ground */
@@ -43,6 +45,9 @@ struct nav_live {
  * [,FROM_S[,UNTIL_S]]]]. False, with *l unchanged, when they are out of range, or the number is
  * taken. */
 bool nav_live_add(struct nav_live *l, const double *value, int count);
+
+/* Take the numbers of --beacon NUMBER,CODE,LAT,LON[,HEIGHT_M[,LATE_US]] likewise. */
+bool nav_live_add_beacon(struct nav_live *l, const double *value, int count);
 
 /* Add the targets of a file of routes. Times ascend, and no leg is faster than
  * NAV_LIVE_SPEED_MOST_MS. Returns 0, or -1 with the mistake reported. */

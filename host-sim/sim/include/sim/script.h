@@ -1,6 +1,6 @@
 /* Scripted operation of the bench: what happens when, one line each.
  *
- *   SECONDS gm|gmt|sea [norm|exp|dbs1|dbs2]   mode and field of view; norm when none is named
+ *   SECONDS gm|gmt|sea|bcn [norm|exp|dbs1|dbs2]   mode and field of view; norm when none is named
  *   SECONDS range 10|20|40|80                 nautical miles: a scale of the radar in use
  *   SECONDS azimuth 60|30|10                  degrees to each side
  *                                             (these words are the radar table's)

@@ -79,13 +79,13 @@ TEST(the_page_after_power_up_has_the_labels_of_the_key_map)
 
 TEST(osb_1_goes_round_the_modes_and_leaves_the_patch)
 {
-    static const char *const modes[] = {"GMT", "SEA", "GM"};
+    static const char *const modes[] = {"GMT", "SEA", "BCN", "GM"};
     struct rig *r = fly_rig();
-    for (int i = 0; i < 3; i++) {
+    for (int i = 0; i < LM_SECTOR_CHOICES; i++) {
         const uint32_t before = plane_sum(r);
         press(r, 1);
         assert_true(labelled(r, 1, modes[i], 0));
-        assert_int_equal(r->unit.picture.sector.command.mode, (i + 1) % LM_SECTOR_MODES);
+        assert_int_equal(r->unit.picture.sector.command.mode, (i + 1) % LM_SECTOR_CHOICES);
         run(r, 2.2);
         assert_true(plane_sum(r) != before);
     }
@@ -1018,7 +1018,8 @@ TEST(a_selection_out_of_range_is_refused_and_changes_nothing)
     assert_int_equal(lm_page_select_range(&page, 39), 0);
     assert_int_equal(lm_page_select_range(&page, 160), 0);
     assert_int_equal(lm_page_select_azimuth(&page, LM_AZIMUTHS), 0);
-    assert_int_equal(lm_page_select_sector(&page, LM_SECTOR_MODES, LM_FOV_NORM), 0);
+    assert_int_equal(lm_page_select_sector(&page, LM_SECTOR_CHOICES, LM_FOV_NORM), 0);
+    assert_int_equal(lm_page_select_sector(&page, LM_SECTOR_BEACON, LM_FOV_DBS1), 0);
     assert_int_equal(lm_page_select_sector(&page, LM_SECTOR_GMT, LM_FOV_DBS2), 0);
     assert_int_equal(lm_page_set_gain(&page, LM_GAIN_MAX_DB + 1), 0);
     assert_int_equal(lm_page_set_knob(&page, -LM_FULL_DEFLECTION - 1), 0);

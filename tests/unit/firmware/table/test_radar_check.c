@@ -167,6 +167,11 @@ static void two_modes_share_a_name(struct lm_radar *r)
     memcpy(r->mode[LM_SECTOR_SEA].name, "gmt", 4);
 }
 
+static void a_mode_has_the_beacons_name(struct lm_radar *r)
+{
+    memcpy(r->mode[LM_SECTOR_SEA].name, "bcn", 4);
+}
+
 static void two_fields_share_a_name(struct lm_radar *r)
 {
     memcpy(r->fov[LM_FOV_DBS2].name, "exp", 4);
@@ -262,6 +267,7 @@ TEST(a_broken_rule_between_fields_is_refused_by_name)
         {a_mode_has_no_name, "mode.name", LM_SECTOR_GM},
         {a_mode_s_name_does_not_end, "mode.name", LM_SECTOR_GMT},
         {two_modes_share_a_name, "mode.name", LM_SECTOR_SEA},
+        {a_mode_has_the_beacons_name, "mode.name", LM_SECTOR_SEA},
         {two_fields_share_a_name, "fov.name", LM_FOV_DBS2},
         {a_field_s_name_has_a_blank, "fov.name", LM_FOV_EXP},
         {a_sector_is_wider_than_the_antenna_turns, "azimuth_half", 0},

@@ -120,7 +120,7 @@ static void do_something(struct glass *g, struct hs_rng *rng)
         break;
     case 1:
         command(r, (struct lm_control){.kind = LM_CONTROL_SECTOR,
-                                       .sector = {(int32_t)hs_rng_below(rng, LM_SECTOR_MODES),
+                                       .sector = {(int32_t)hs_rng_below(rng, LM_SECTOR_CHOICES),
                                                   (int32_t)hs_rng_below(rng, LM_FOVS)}});
         break;
     case 2:

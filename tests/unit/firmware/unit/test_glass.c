@@ -6,7 +6,7 @@
 #include <stdio.h>
 
 /* Pairs of a mode and a field of view. */
-enum { FOVS = LM_FOVS, PAIRS = (int)LM_SECTOR_MODES * (int)LM_FOVS };
+enum { FOVS = LM_FOVS, PAIRS = (int)LM_SECTOR_CHOICES * (int)LM_FOVS };
 
 /* Pixels that are not black outside the frame, but for texts and the hand that shows life. */
 static void nothing_is_beside_the_frame(const struct walk *w, const char *situation)
@@ -30,13 +30,13 @@ static void check_sectors(struct walk *w)
 {
     const struct lm_radar *radar = &lm_radar_default;
     for (int32_t n = 0; n < PAIRS * radar->ranges * LM_AZIMUTHS; n++) {
-        const int32_t mode = n / FOVS % LM_SECTOR_MODES, fov = n % FOVS;
+        const int32_t mode = n / FOVS % LM_SECTOR_CHOICES, fov = n % FOVS;
         const int32_t range = n / PAIRS % radar->ranges;
         const int32_t azimuth = n / (PAIRS * radar->ranges);
         const int32_t range_nm = radar->range[range].range_nm;
         const struct lm_control narrow = {.kind = LM_CONTROL_AZIMUTH, .azimuth_index = azimuth};
         const struct lm_control scale = {.kind = LM_CONTROL_RANGE, .range_nm = range_nm};
-        if (fov > radar->mode[mode].fov_last ||
+        if (fov > (int32_t)lm_radar_fov_last(radar, (uint32_t)mode) ||
             range > (int32_t)lm_radar_range_last(radar, (uint32_t)mode, (uint32_t)fov)) {
             continue;
         }
@@ -185,14 +185,15 @@ static void look_at_pictures(struct walk *w)
     const struct lm_radar *radar = &lm_radar_default;
     for (int32_t n = 0; n < PAIRS; n++) {
         const int32_t mode = n / LM_FOVS, fov = n % LM_FOVS;
-        if (fov > radar->mode[mode].fov_last) {
+        if (fov > (int32_t)lm_radar_fov_last(radar, (uint32_t)mode)) {
             continue;
         }
         for (uint32_t i = 0; i <= lm_radar_range_last(radar, (uint32_t)mode, (uint32_t)fov); i++) {
             char setting[32];
             const int32_t range_nm = radar->range[i].range_nm;
-            snprintf(setting, sizeof setting, "%s %s %d nm", radar->mode[mode].name,
-                     radar->fov[fov].name, (int)range_nm);
+            snprintf(setting, sizeof setting, "%s %s %d nm",
+                     lm_radar_mode_name(radar, (uint32_t)mode), radar->fov[fov].name,
+                     (int)range_nm);
             command(w->rig, range_10);
             command(w->rig, (struct lm_control){.kind = LM_CONTROL_SECTOR, .sector = {mode, fov}});
             command(w->rig, (struct lm_control){.kind = LM_CONTROL_RANGE, .range_nm = range_nm});

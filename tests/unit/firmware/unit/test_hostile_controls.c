@@ -90,7 +90,7 @@ static void check_bounds(const struct rig *r)
 {
     const struct lm_page *p = &r->unit.page;
     assert_true(p->range_index < lm_radar_default.ranges && p->azimuth_index < LM_AZIMUTHS);
-    assert_true(p->format <= LM_FORMAT_TEST && p->mode < LM_SECTOR_MODES);
+    assert_true(p->format <= LM_FORMAT_TEST && p->mode < LM_SECTOR_CHOICES);
     assert_true(p->fov < LM_FOVS && p->range_index <= lm_page_range_last(p) &&
                 p->cell_mm >= lm_radar_default.sar.cell_min_mm &&
                 p->cell_mm <= lm_radar_default.sar.cell_max_mm);
@@ -135,11 +135,11 @@ TEST(a_million_hostile_controls_break_no_bound)
         assert_int_equal(r->control_next, r->control_count);
         check_bounds(r);
         formats_seen |= 1u << r->unit.page.format;
-        modes_seen |=
-            1u << (r->unit.page.picture == LM_PICTURE_PATCH ? LM_SECTOR_MODES : r->unit.page.mode);
+        modes_seen |= 1u << (r->unit.page.picture == LM_PICTURE_PATCH ? LM_SECTOR_CHOICES
+                                                                      : r->unit.page.mode);
     }
     assert_int_equal(formats_seen, 31); /* the stream has been everywhere */
-    assert_int_equal(modes_seen, 15);
+    assert_int_equal(modes_seen, 31);
     assert_true(r->unit.count.frames > 1000);
     print_message("# %u pictures, %u lines, %u refused, %u swaps\n", r->unit.count.frames,
                   r->unit.count.lines, r->unit.count.commands_refused, r->unit.count.swaps);

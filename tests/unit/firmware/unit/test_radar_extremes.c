@@ -117,7 +117,7 @@ static void draw_mode(struct rig *r, uint32_t mode)
     for (uint32_t n = 0; n < 2 * LM_FOVS; n++) {
         const uint32_t field = n / 2;
         const uint32_t scale = n % 2 ? lm_radar_range_last(radar, mode, field) : 0;
-        if (field <= radar->mode[mode].fov_last) {
+        if (field <= lm_radar_fov_last(radar, mode)) {
             const uint32_t lines = r->unit.count.lines;
             const int32_t smallest = radar->range[0].range_nm, nm = radar->range[scale].range_nm;
             command(r, (struct lm_control){.kind = LM_CONTROL_RANGE, .range_nm = smallest});
@@ -215,7 +215,7 @@ static void fly(const struct lm_radar *table, double height_m, struct hs_rng *rn
         command(r, (struct lm_control){.kind = LM_CONTROL_GAIN,
                                        .gain_db = (int32_t)hs_rng_below(rng, 61) - 30});
     }
-    for (uint32_t mode = 0; mode < LM_SECTOR_MODES; mode++) {
+    for (uint32_t mode = 0; mode < LM_SECTOR_CHOICES; mode++) {
         draw_mode(r, mode);
     }
     draw_patch(r, table->sar.cell_min_mm);

@@ -407,7 +407,7 @@ TEST(hostile_commands_are_refused_and_counted)
         {.kind = LM_CONTROL_GAIN, .gain_db = 31},
         {.kind = LM_CONTROL_GAIN, .gain_db = -31},
         {.kind = LM_CONTROL_SECTOR, .sector = {.mode = -1}},
-        {.kind = LM_CONTROL_SECTOR, .sector = {.mode = LM_SECTOR_MODES}},
+        {.kind = LM_CONTROL_SECTOR, .sector = {.mode = LM_SECTOR_CHOICES}},
         {.kind = LM_CONTROL_SECTOR, .sector = {.fov = -1}},
         {.kind = LM_CONTROL_SECTOR, .sector = {.fov = LM_FOVS}},
         {.kind = (enum lm_control_kind)99},

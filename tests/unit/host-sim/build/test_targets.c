@@ -90,6 +90,32 @@ TEST(a_file_says_all_that_a_record_holds)
     build_targets_free(&t);
 }
 
+TEST(a_beacon_has_a_code_and_perhaps_a_delay)
+{
+    static const char *const wrong[] = {"beacon",      "beacon 16",    "beacon 1.5", "beacon -1",
+                                        "beacon 1 16", "beacon 1 2 3", "beacon x"};
+    struct build_targets t;
+    scene_text("beacons.targets",
+               "target a 46 11 ground+20 0 beacon 5\n"
+               "target b 46 11 0 0 beacon 15 10 moving 8 6000\n");
+    assert_int_equal(build_targets_read(&t, scene_path("beacons.targets")), 0);
+    assert_int_equal(t.items[0].signature, 5);
+    assert_int_equal(t.items[0].flags, LM_TARGET_ABOVE_GROUND | LM_TARGET_IS_BEACON);
+    assert_int_equal(t.items[1].signature, 0xaf);
+    assert_int_equal(t.items[1].flags, LM_TARGET_IS_BEACON);
+    assert_int_equal(t.items[1].speed_mm_s, 8000);
+    for (uint32_t i = 0; i < t.count; i++) {
+        assert_int_equal(lm_target_check(&t.items[i]), LM_OK);
+    }
+    build_targets_free(&t);
+    for (size_t i = 0; i < sizeof wrong / sizeof *wrong; i++) {
+        char list[80];
+        snprintf(list, sizeof list, "target a 46 11 0 0 %s\n", wrong[i]);
+        scene_text("beacons.targets", list);
+        assert_int_equal(build_targets_read(&t, scene_path("beacons.targets")), -1);
+    }
+}
+
 /* Legs of up to 100 km end within a decimetre of their places, as the firmware goes them. */
 TEST(a_path_leads_to_its_places)
 {

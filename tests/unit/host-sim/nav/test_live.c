@@ -128,13 +128,41 @@ TEST(all_256_are_told_once_a_second)
     free(l);
 }
 
+TEST(a_beacon_is_told_with_its_reply)
+{
+    static const double good[] = {7, 5, 46.1, 11, 120, 10};
+    static const struct {
+        int place;
+        double value;
+    } bad[] = {{0, 256}, {1, 16}, {1, 1.5}, {1, -1}, {2, 91}, {4, 16001}, {5, 16}, {5, 0.5}};
+    struct nav_live *l = calloc(1, sizeof *l);
+    struct ear *ear = calloc(1, sizeof *ear);
+    for (size_t i = 0; i < sizeof bad / sizeof *bad; i++) {
+        double v[6];
+        memcpy(v, good, sizeof v);
+        v[bad[i].place] = bad[i].value;
+        assert_false(nav_live_add_beacon(l, v, 6));
+    }
+    assert_false(nav_live_add_beacon(l, good, 3));
+    assert_int_equal(l->count, 0);
+    assert_true(nav_live_add_beacon(l, good, 6));
+    assert_false(nav_live_add_beacon(l, good, 4)); /* the number is taken */
+    send(l, 5, ear, listen);
+    const struct lm_live_target *t = &ear->live.live.target[7];
+    assert_true(t->is_there && t->has_height);
+    assert_int_equal(t->kind, LM_LIVE_BEACON);
+    assert_int_equal(t->signature, 0xa5);
+    free(ear);
+    free(l);
+}
+
 TEST(what_is_out_of_range_is_not_taken)
 {
     static const double good[] = {1, 3, 46, 11, 90, 15, 100, 2, 3, 9};
     static const struct {
         int place;
         double value;
-    } bad[] = {{0, 256},  {0, -1}, {0, 1.5},   {1, 17}, {2, 91}, {3, 181}, {4, 361},
+    } bad[] = {{0, 256},  {0, -1}, {0, 1.5},   {1, 18}, {2, 91}, {3, 181}, {4, 361},
                {5, 1001}, {5, -1}, {6, 16001}, {7, 61}, {8, -1}, {9, 3}};
     struct nav_live *l = calloc(1, sizeof *l);
     for (size_t i = 0; i < sizeof bad / sizeof *bad; i++) {
@@ -237,7 +265,9 @@ TEST(mistakes_in_a_file_of_routes_are_refused)
                                       "at 0 46 11\n",
                                       "gone\n",
                                       "target 256 3\n at 0 46 11\n",
-                                      "target 1 17\n at 0 46 11\n",
+                                      "target 1 18\n at 0 46 11\n",
+                                      "target 1 17 256\n at 0 46 11\n",
+                                      "target 1 16 5\n at 0 46 11\n",
                                       "target 1\n at 0 46 11\n",
                                       "target 1 3\n",
                                       "target 1 3\ntarget 2 3\n at 0 46 11\n",

@@ -138,10 +138,11 @@ TEST(the_buttons_of_the_rockers_are_all_different_and_follow_the_osbs)
 TEST(a_mode_takes_any_of_its_fields_and_without_one_the_whole_sector)
 {
     const struct lm_radar *radar = &lm_radar_default;
-    for (int mode = 0; mode < LM_SECTOR_MODES; mode++) {
+    for (int mode = 0; mode < LM_SECTOR_CHOICES; mode++) {
+        const char *name = lm_radar_mode_name(radar, (uint32_t)mode);
         struct script s;
         char text[40];
-        snprintf(text, sizeof text, "0 %s\n", radar->mode[mode].name);
+        snprintf(text, sizeof text, "0 %s\n", name);
         assert_int_equal(read_text(&s, text), 0);
         const struct lm_control plain = at(&s, 0);
         assert_int_equal(plain.kind, LM_CONTROL_SECTOR);
@@ -149,9 +150,8 @@ TEST(a_mode_takes_any_of_its_fields_and_without_one_the_whole_sector)
         assert_int_equal(plain.sector.fov, LM_FOV_NORM);
         script_free(&s);
         for (int field = 0; field < LM_FOVS; field++) {
-            snprintf(text, sizeof text, "0 %s %s\n", radar->mode[mode].name,
-                     radar->fov[field].name);
-            const bool has_field = field <= radar->mode[mode].fov_last;
+            snprintf(text, sizeof text, "0 %s %s\n", name, radar->fov[field].name);
+            const bool has_field = field <= (int)lm_radar_fov_last(radar, (uint32_t)mode);
             assert_int_equal(read_text(&s, text), has_field ? 0 : -1);
             if (has_field) {
                 const struct lm_control c = at(&s, 0);
