@@ -2,10 +2,24 @@
 
 #include <string.h>
 
+/* Whether a frame of the bus is one that the script speaks of, by the same node. */
+static bool clashes(const struct drill *d, const struct lm_can_frame *f)
+{
+    const struct nav_exercise *x = d->exercise;
+    const bool is_clock = f->id >= CANAS_EXERCISE_TIME && f->id <= CANAS_EXERCISE_SEED;
+    const bool is_malfunction = f->id == CANAS_MALFUNCTION || f->id == CANAS_MALFUNCTION_CLEAR;
+    return f->length > 0 && f->data[0] == NAV_EXERCISE_NODE &&
+           ((is_clock && x->has_clock) || (is_malfunction && x->malfunction_count > 0));
+}
+
 static int hear(void *ctx, struct lm_can_frame *frame)
 {
     struct drill *d = ctx;
     const int status = d->behind->receive(d->behind->ctx, frame);
+    if (status > 0 && d->clash_id == 0 && clashes(d, frame)) {
+        d->clash_id = frame->id;
+        d->clash_us = d->now_us;
+    }
     if (status != 0 || d->next == d->count) {
         return status;
     }

@@ -181,6 +181,29 @@ check 'the summary says what was heard of them' printed \
     'live targets: 9 sets taken, 0 torn, 0 out of range, 0 frames of a second sender; 1 removed, 0 aged out, 1 there'
 tr -d ' \n' <"$work/live.json" >"$work/live.one"
 check 'and so does the report' grep -q '"live":{"sets":9,' "$work/live.one"
+# A track that the transmitter interrupts
+cat >"$work/track.script" <<END
+0    range 10
+1    cursor 46.02 11
+1.5  track
+3    osb 4
+4    osb 4
+5    drop
+END
+check 'a flight that tracks ends well' exits 0 "$sim" --db "$db" --bus "$work/live.log" --script "$work/track.script" --json "$work/track.json"
+check 'the summary says what was tracked' printed 'FTT from 1.50 s, held from 1.5'
+check 'why it broke' printed 's: silent; over at 5.0'
+tr -d ' \n' <"$work/track.json" >"$work/track.one"
+check 'and so does the report' grep -q '"tracks_begun":1,"tracks":\[{"kind":"FTT","state":"off","loss":"none","begun_s":1.5' "$work/track.one"
+# One clock told by two, as one node
+"$build/bin/landmass-nav" --straight 45.97,11,0,2000,150 --seconds 3 --quiet --exercise-clock 3600 --out "$work/clock.log" || exit 1
+printf '1 clock 100\n' >"$work/clock.script"
+printf '1 break frozen-video\n' >"$work/break.script"
+check 'a clock of the bus and one of the script are refused' \
+    exits 1 "$sim" --db "$db" --bus "$work/clock.log" --script "$work/clock.script"
+check 'with cause and remedy' said 'clock.script: tells what the bus tells, too: frame 182'
+check 'the bus may tell the clock, and the script what is broken' \
+    exits 0 "$sim" --db "$db" --bus "$work/clock.log" --script "$work/break.script"
 check 'rain on the bus is in the sector' test "$(cmp -s "$work/fair/sector.png" "$work/storm/sector.png" && echo same)" = ''
 check 'and lies over a patch, which is not darker for it' \
     test "$(cmp -s "$work/fair/patch.png" "$work/storm/patch.png" && echo same)" = '' -a "$(black storm/patch)" -le "$(black fair/patch)"

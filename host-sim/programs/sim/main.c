@@ -19,6 +19,7 @@
 #include "sim/drill.h"
 #include "sim/hands.h"
 #include "sim/script.h"
+#include "sim/track_log.h"
 #include "sim/window.h"
 
 #include <errno.h>
@@ -52,6 +53,7 @@ struct sim {
     struct recorder recorder;
     struct replay replay;
     struct window_player player;
+    struct track_log tracks;
     uint64_t now_us; /* of the step */
     struct timespec slept;
     struct hands hands;
@@ -270,6 +272,7 @@ static int step(struct sim *s, uint64_t now_us)
         record_step(&s->recorder, now_us);
     }
     lm_unit_step(s->bench.unit, now_us);
+    track_log_step(&s->tracks, &s->bench.unit->track, now_us);
     return s->bench.pictures != before ? serve_picture(s) : 0;
 }
 
@@ -277,6 +280,19 @@ static void put_line(void *ctx, const char *line, size_t bytes)
 {
     const struct sim *s = ctx;
     (void)fwrite(line, 1, bytes, s->recording.stream); /* commit tells */
+}
+
+/* A log and a script that both tell what node 30 tells would be heard as one sender that
+ * contradicts itself: the clock would jump to and fro. */
+static int judge_drill(const struct sim *s)
+{
+    const uint32_t id = s->drill.clash_id;
+    return id == 0 ? 0
+                   : hs_error(s->options.script,
+                              "leave them to one of the two: take `clock` or `break` out of the "
+                              "script, or record the log without them",
+                              "tells what the bus tells, too: frame %u of node %u came at %.2f s",
+                              id, (unsigned)NAV_EXERCISE_NODE, (double)s->drill.clash_us * 1e-6);
 }
 
 static int fly(struct sim *s)
@@ -291,6 +307,7 @@ static int fly(struct sim *s)
     int status = 0;
     for (uint64_t now_us = 0; now_us <= end_us && status == 0; now_us += STEP_US) {
         status = step(s, now_us);
+        status = status == 0 ? judge_drill(s) : status;
         if (o->seconds <= 0 && s->log_file && drv_can_log_is_over(&s->log)) {
             break;
         }
@@ -312,6 +329,7 @@ static int step_again(struct sim *s, uint64_t from_us)
         return 2;
     }
     lm_unit_step(s->bench.unit, s->now_us);
+    track_log_step(&s->tracks, &s->bench.unit->track, s->now_us);
     s->bench.pictures = p->pictures;
     s->bench.glass = p->shown[p->pictures % REPLAY_BUFFERS];
     return p->pictures != before && s->now_us >= from_us ? serve_picture(s) : 0;
@@ -349,6 +367,7 @@ static int rewind_flight(struct sim *s, const struct bench_bus *bus)
 {
     replay_close(&s->replay);
     bench_close(&s->bench);
+    s->tracks = (struct track_log){0};
     return open_recording(s) == 0 ? open_again(s, bus) : -1;
 }
 
@@ -508,6 +527,7 @@ static void report_bus(const struct sim *s)
     hs_report_put("frames_of_a_second_sender", w->count.rivals);
     hs_report_close();
     report_live(u);
+    track_log_report(&s->tracks);
 }
 
 static void report_map(const struct lm_unit *u)
@@ -625,6 +645,7 @@ static void print_summary(const struct sim *s)
             w->count.sets, w->count.torn, w->count.refused, w->count.numbers, w->count.rivals);
     }
     print_live(u);
+    track_log_print(&s->tracks);
     if (!u->map.is_usable) {
         printf("database: not usable, nothing was drawn\n");
         return;

@@ -15,6 +15,9 @@ struct drill {
     struct canas_frame frame[DRILL_FRAMES];
     int count, next;
     uint64_t now_us;
+    uint32_t clash_id; /* of the first frame behind, of the drill's node, that tells what the drill
+                          tells: a clock or malfunctions; 0: none */
+    uint64_t clash_us; /* of the step that heard it */
 };
 
 /* A port that hears the bus `behind`, then the frames of the drill, and sends to that bus. The
