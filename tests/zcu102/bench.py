@@ -19,7 +19,7 @@ LINE_BUDGET_US = 3900  # a line of the fastest sweep, 256 of them in a second
 MIPS = 100
 # As bench.c numbers them: enum lm_sector_mode times enum lm_fov, and behind them the patches.
 SECTORS = [f"{mode} {field}" for mode in ("GM", "GMT", "SEA", "BCN") for field in ("NORM", "EXP", "DBS1", "DBS2")]
-MODES = dict(enumerate(SECTORS + ["SAR patch", "SAR patch finer than the map"]))
+MODES = dict(enumerate(SECTORS + ["SAR patch", "SAR patch finer than the map", "a track held"]))
 PATCH = len(SECTORS)
 FINER = PATCH + 1
 PATCH_CELLS = 256
@@ -117,12 +117,11 @@ def print_tiles(modes):
 def record(modes, first_picture_us):
     rows = [(cost, "instructions", what) for cost, what in tile_costs(modes)]
     for mode, stages in sorted(modes.items()):
-        if "line" not in stages:
-            continue
-        drawn, paint = a_line(stages, PATCH_STAGES if mode >= PATCH else SECTOR_STAGES)
-        rows += [(drawn, "instructions", f"{MODES[mode]}, a line"),
-                 (paint, "instructions", f"{MODES[mode]}, painting a line"),
-                 (stages["step"][2], "instructions", f"{MODES[mode]}, worst step"),
+        if "line" in stages:
+            drawn, paint = a_line(stages, PATCH_STAGES if mode >= PATCH else SECTOR_STAGES)
+            rows += [(drawn, "instructions", f"{MODES[mode]}, a line"),
+                     (paint, "instructions", f"{MODES[mode]}, painting a line")]
+        rows += [(stages["step"][2], "instructions", f"{MODES[mode]}, worst step"),
                  (stages["frame-step"][2], "instructions", f"{MODES[mode]}, worst step with a frame")]
         if "steady-frame" in stages:
             rows.append((stages["steady-frame"][1] / stages["steady-frame"][0], "instructions",

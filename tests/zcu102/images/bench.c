@@ -18,8 +18,8 @@ void instrument_nothing(void)
 {
 }
 
-_Static_assert(LM_SECTOR_CHOICES *LM_FOVS + 1 < INSTRUMENT_MODES,
-               "a sum for each mode and both patches");
+_Static_assert(LM_SECTOR_CHOICES *LM_FOVS + 2 < INSTRUMENT_MODES,
+               "a sum for each mode, both patches and a track");
 
 /* What changes in the steady sweep is composed in one step, or in two or three with many lines. */
 enum { STEADY_STEPS = 3 };
@@ -42,11 +42,14 @@ static void add(struct instrument_sum *sum, uint64_t spent)
     sum->most = spent > sum->most ? (uint32_t)spent : sum->most;
 }
 
-/* A number for what is being drawn: mode and field of the sector, behind them the patch, and the
- * patch of cells finer than the map. */
+/* A number for what is being drawn: mode and field of the sector, behind them the patch, the patch
+ * of cells finer than the map, and a track that is held, which draws nothing. */
 static uint32_t mode_of(const struct lm_unit *unit)
 {
     const uint32_t patch = LM_SECTOR_CHOICES * LM_FOVS;
+    if (unit->track.state >= LM_TRACK_HELD) {
+        return patch + 2;
+    }
     return unit->page.picture == LM_PICTURE_PATCH
                ? patch + unit->picture.sar.blend.is_on
                : (uint32_t)unit->page.mode * LM_FOVS + unit->page.fov;
