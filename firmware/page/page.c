@@ -296,7 +296,7 @@ bool lm_page_bytes_are_sound(const struct lm_page *p, const uint8_t byte[LM_PAGE
     /* The most of each; a negative one is also the least. */
     static const int8_t most[LM_PAGE_BYTES] = {LM_FORMATS - 1,
                                                LM_PICTURES - 1,
-                                               LM_SECTOR_MODES - 1,
+                                               LM_SECTOR_CHOICES - 1,
                                                LM_FOVS - 1,
                                                INT8_MAX,
                                                LM_AZIMUTHS - 1,
@@ -324,7 +324,7 @@ bool lm_page_bytes_are_sound(const struct lm_page *p, const uint8_t byte[LM_PAGE
             return false;
         }
     }
-    return byte[3] <= p->radar->mode[byte[2]].fov_last &&
+    return byte[3] <= lm_radar_fov_last(p->radar, byte[2]) &&
            byte[4] <= lm_radar_range_last(p->radar, byte[2], byte[3]);
 }
 

@@ -488,7 +488,7 @@ TEST(any_frames_at_all_are_safe)
         }
         fly(w, 0.004);
         const struct lm_page *p = &left->unit.page;
-        assert_true(p->format < LM_FORMATS && p->mode < LM_SECTOR_MODES &&
+        assert_true(p->format < LM_FORMATS && p->mode < LM_SECTOR_CHOICES &&
                     p->range_index <= lm_page_range_last(p));
     }
     assert_true(left->unit.swap.refused > 100);
