@@ -49,8 +49,9 @@ static void check_sectors(struct walk *w)
         command(w->rig, lm_control_slew(n % 2 ? 1000 : -1000, n % 4 < 2 ? -1000 : 1000));
         run(w->rig, 0.11 + 0.05 * (n % 3));
         char situation[64];
-        snprintf(situation, sizeof situation, "%s %s %d nm A%d", radar->mode[mode].name,
-                 radar->fov[fov].name, (int)range_nm, (int)azimuth);
+        snprintf(situation, sizeof situation, "%s %s %d nm A%d",
+                 lm_radar_mode_name(radar, (uint32_t)mode), radar->fov[fov].name, (int)range_nm,
+                 (int)azimuth);
         nothing_is_beside_the_frame(w, situation);
     }
 }
