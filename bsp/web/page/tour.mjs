@@ -28,7 +28,7 @@ export const STOPS = [
     {title: 'Doppler beam sharpening',
         text: 'Back in the ground map, key 3 turns through the fields of view. EXP is a closer window around the cursor; '
             + 'DBS1 and DBS2 sharpen it by Doppler, but not close to the track.',
-        act: press(1, 3, 3)},
+        act: press(1, 1, 3, 3)},
     {title: 'A patch of the town',
         text: 'Designate draws a patch of synthetic aperture around the cursor, as a photograph in radar light. Streets '
             + 'flash where they are square to the radar; buildings lean towards it and throw shadows.',
