@@ -417,7 +417,7 @@ TEST(a_page_that_this_radar_does_not_have_is_not_answered)
 {
     static const struct {
         uint8_t at, value;
-    } wrong[] = {{0, 5},  {1, 2},   {2, 3},    {3, 4},   {4, 9},   {4, 255}, {5, 3},  {6, 2},
+    } wrong[] = {{0, 5},  {1, 2},   {2, 4},    {3, 4},   {4, 9},   {4, 255}, {5, 3},  {6, 2},
                  {13, 2}, {14, 31}, {14, 225}, {15, 21}, {17, 11}, {18, 3},  {20, 9}, {23, 2}};
     struct rig *left;
     struct wire *w = begin_alone(&left);
