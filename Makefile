@@ -29,7 +29,7 @@ $(call archive, $(LIB_support), $(wildcard tests/support/*.c))
 make_board = env $(patsubst %,-u %,MAKEFLAGS MAKEOVERRIDES CC OPT OPT_core LDFLAGS) $(MAKE) --no-print-directory -j2 BOARD=$(1)
 
 .PHONY: help deps all run check check-clang check-panel panel package bench gallery fuzz rooms lint format clean
-.PHONY: cuts web zcu102 run-zcu102 size bench-zcu102 coverage figures
+.PHONY: cuts web zcu102 run-zcu102 size bench-zcu102 coverage figures prove
 
 help: ## Print this menu
 	@echo 'landmass: make TARGET'
@@ -108,6 +108,10 @@ COUNTED := -fprofile-instr-generate
 coverage: deps ## Print the share of lines, branches and conditions of fixed and firmware that unit tests and golden pictures run
 	@$(MAKE) --no-print-directory -j2 CC=clang-19 O=build/coverage OPT='-O1 -g' LDFLAGS=$(COUNTED) \
 	    OPT_core='$(COUNTED) -fcoverage-mapping -fcoverage-mcdc' coverage-built
+
+prove: deps ## Prove with CBMC what tests/prove states: all, or NAME=canas; PLANTS=1: see planted bugs found
+	@$(MAKE) -s --no-print-directory $(GEN)/fixed/src/tables.c
+	@python3 -B tests/prove/prove.py $(O) $(if $(PLANTS),--plants) $(NAME)
 
 figures: deps ## Print size, stack, instructions and coverage beside those of the last release
 	@sh tests/figures/figures.sh $(O)

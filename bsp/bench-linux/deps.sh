@@ -4,6 +4,12 @@ set -eu
 list=$(sed 's/#.*//' "$(dirname "$0")/packages.txt")
 missing=
 for package in $list; do
+    case $package in
+    \?*)
+        package=${package#?}
+        apt-cache show "$package" >/dev/null 2>&1 || continue
+        ;;
+    esac
     dpkg-query -W -f '${Status}' "$package" 2>/dev/null | grep -q 'ok installed' || missing="$missing $package"
 done
 [ -n "$missing" ] || exit 0
