@@ -10,6 +10,8 @@
 
 enum {
     RANGE_MOST = 100000,
+    POLE = 90,
+    TURN_MOST = 179, /* deg/s; 180 does not fit the unit that is kept */
     AGE_MOST_MS = 60000,
     COORDINATE_AGE_MOST_MS = 4000,
     FRAME_BITS = 64,
@@ -100,13 +102,22 @@ static bool has_no_rival(const struct lm_bus_profile *p, uint32_t index)
     return !is_packed || in_frame <= LM_BUS_EVENTS;
 }
 
+/* Largest number of a field's range, in the unit of the bus. Other angles wrap. */
+static int32_t range_most(uint8_t field)
+{
+    const bool is_latitude = field == LM_BUS_LATITUDE || field == LM_BUS_STEERPOINT_LATITUDE;
+    return is_latitude                                        ? POLE
+           : lm_bus_fields[field].unit == LM_BUS_BAM_A_SECOND ? TURN_MOST
+                                                              : RANGE_MOST;
+}
+
 /* A count, which is kept as it comes, may have any 32 bits. */
 static bool is_range_sound(const struct lm_bus_row *row)
 {
     const struct lm_bus_scale *scale = lm_bus_scale_of((enum lm_bus_field)row->field);
     const bool is_count = scale->frac_bits == 0 && scale->multiplier == scale->divisor;
-    return row->low < row->high &&
-           (is_count || (row->low >= -RANGE_MOST && row->high <= RANGE_MOST));
+    const int32_t most = range_most(row->field);
+    return row->low < row->high && (is_count || (row->low >= -most && row->high <= most));
 }
 
 static bool is_row_sound(const struct lm_bus_profile *p, uint32_t index)

@@ -101,8 +101,9 @@ const struct lm_bus_profile *lm_bus_profile_named(const struct lm_bus_named_prof
  * Returns LM_OK, or LM_ERR_TABLE iff
  * - there are no rows, or more than LM_BUS_ROWS_MAX; the framing is unknown; a mask has bits
  * outside an identifier, or the channel's more than 8;
- * - a range is empty or beyond +-100,000; period, stale and dead do not rise in this order within
- *   60 s (of latitude and longitude 4 s), or the period is below 1 ms;
+ * - a range is empty or beyond +-100,000, of latitudes +-90 and of turn rates +-179 deg/s; period,
+ *   stale and dead do not rise in this order within 60 s (of latitude and longitude 4 s), or the
+ *   period is below 1 ms;
  * - CANaerospace: an identifier outside 200..1999 or given twice; types that lm_canas_fits refuses,
  *   none, or, where types are assumed, two; per_unit outside 1..10^9;
  * - packed: an identifier outside its mask, bits outside the frame or unfit for their type, a

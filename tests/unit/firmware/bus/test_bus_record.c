@@ -170,6 +170,11 @@ SPOIL(unknown_field, row->field = LM_BUS_FIELDS)
 SPOIL(empty_range, row->low = row->high)
 SPOIL(low_range, row->low = -100001)
 SPOIL(high_range, row->high = 100001)
+SPOIL(past_the_pole, (row->field = LM_BUS_LATITUDE, row->dead_ms = 2000, row->high = 91))
+SPOIL(past_the_south, (row->field = LM_BUS_STEERPOINT_LATITUDE, row->low = -91))
+SPOIL(half_turn, (row->field = LM_BUS_YAW_RATE, row->low = -180))
+SPOIL(widest_latitude, (row->field = LM_BUS_LATITUDE, row->dead_ms = 2000, row->high = 90))
+SPOIL(widest_turn, (row->field = LM_BUS_YAW_RATE, row->low = -179, row->high = 179))
 SPOIL(quick_period, row->period_us = 999)
 SPOIL(slow_period, row->period_us = row->stale_ms * 1000u + 1)
 SPOIL(dead_first, row->dead_ms = row->stale_ms)
@@ -232,6 +237,20 @@ TEST(every_promise_of_a_row_is_checked)
     }
     for (size_t i = 0; i < sizeof packed / sizeof *packed; i++) {
         assert_int_equal(check_spoilt(LM_BUS_PACKED, packed[i], NULL), LM_ERR_TABLE);
+    }
+}
+
+/* 180 degrees a second would be -180 in the unit that is kept; a latitude has no sense past a pole.
+ */
+TEST(a_range_holds_nothing_that_would_wrap)
+{
+    static void (*const wide[])(struct lm_bus_row *) = {past_the_pole, past_the_south, half_turn};
+    for (uint8_t framing = LM_BUS_CANAEROSPACE; framing <= LM_BUS_PACKED; framing++) {
+        for (size_t i = 0; i < sizeof wide / sizeof *wide; i++) {
+            assert_int_equal(check_spoilt(framing, wide[i], NULL), LM_ERR_TABLE);
+        }
+        assert_int_equal(check_spoilt(framing, widest_latitude, NULL), LM_OK);
+        assert_int_equal(check_spoilt(framing, widest_turn, NULL), LM_OK);
     }
 }
 
