@@ -102,6 +102,8 @@ def processor_s():
 
 
 class Result:
+    properties, all_s = 0, 0.0  # of all results so far
+
     def __init__(self, proof, build, tree):
         begin = processor_s()
         done = subprocess.run(command(proof, build), cwd=tree, capture_output=True, text=True, preexec_fn=limits)
@@ -109,9 +111,11 @@ class Result:
         if done.returncode < 0:
             self.output += f"no answer in {TIMEOUT_S} s of the processor"
         self.seconds = processor_s() - begin
+        Result.all_s += self.seconds
         self.findings = re.findall(r"^\[.*: FAILURE$", self.output, re.M)
         self.failed = len(self.findings)
         self.checked = self.failed + len(re.findall(r"^\[.*: SUCCESS$", self.output, re.M))
+        Result.properties += self.checked
         self.holds = self.checked > 0 and self.failed == 0 and "VERIFICATION SUCCESSFUL" in self.output
         self.is_refuted = self.failed > 0
 
@@ -186,7 +190,8 @@ def main():
     jobs = [(plant, p, e) for p in proofs for e in p.plants] if asked.plants else [(prove, p) for p in proofs]
     failed = sum(not job(*what, asked.build, asked.tap, n) for n, (job, *what) in enumerate(jobs, 1))
     if not asked.tap:
-        print(f"{len(jobs) - failed} {'bugs found' if asked.plants else 'proved'}, {failed} failed")
+        print(f"{len(jobs) - failed} {'bugs found' if asked.plants else 'proved'}, {failed} failed; "
+              f"{Result.properties} properties, {Result.all_s:.0f} s of a processor")
     return 1 if failed else 0
 
 
