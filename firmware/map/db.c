@@ -243,8 +243,8 @@ static int read_tables(struct lm_db *db, const struct lm_image_header *h, uint32
     const uint64_t band_bytes = (uint64_t)db->band_count * sizeof(struct lm_band);
     const struct lm_image_section *classes = find_section(h, LM_IMAGE_CLASSES, sizeof db->classes);
     const struct lm_image_section *bands = find_section(h, LM_IMAGE_BANDS, band_bytes);
-    const struct lm_image_section *directory =
-        find_section(h, LM_IMAGE_DIRECTORY, (uint64_t)db->entry_count * sizeof(struct lm_tile_entry));
+    const struct lm_image_section *directory = find_section(
+        h, LM_IMAGE_DIRECTORY, (uint64_t)db->entry_count * sizeof(struct lm_tile_entry));
     if (!classes || !bands || !directory) {
         return LM_ERR_CORRUPT;
     }
