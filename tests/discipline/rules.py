@@ -79,7 +79,9 @@ class Tree:
             flags = [flag for flag in flags if not flag.startswith(("-march=", "-mtune="))]
         command = (compiler or self.flags["CC"]) + flags + list(more)
         command += ["-c", str(source), "-o", str(output)]
-        result = subprocess.run(command, cwd=self.root, capture_output=True, text=True)
+        # A compiler cache would keep the object alone, and lose the graph of calls beside it.
+        environment = {**os.environ, "CCACHE_DISABLE": "1"} if "-fcallgraph-info=su" in more else None
+        result = subprocess.run(command, cwd=self.root, capture_output=True, text=True, env=environment)
         return "" if result.returncode == 0 else result.stderr or f"exit status {result.returncode}"
 
     def objects(self, kind, *more, compiler=None):
