@@ -1,5 +1,7 @@
 #include "config_table.h"
 
+#include "slots/places.h"
+
 /* clang-format would give each number a line of its own; a macro's arguments it lets stand. */
 #define AT(member)   offsetof(struct config, member)
 #define ROOM(member) sizeof(((struct config *)0)->member)
@@ -18,9 +20,16 @@
 #define AXIS_VALUES "none | [-] x y z rx ry rz slider dial wheel hatx haty rudder throttle"
 
 const struct config_row config_table[] = {
+    OPTION(
+        CONFIG_PATH_TO, slot_a, 0, ROOM(slot_a), "none", "slot.a", "PATH | none", SLOT_A,
+        "First slot for a database: a file, a block device or an MTD device, which landmass-load "
+        "writes. Of two slots the one of the later load that is whole is flown."),
+    OPTION(CONFIG_PATH_TO, slot_b, 0, ROOM(slot_b), "none", "slot.b", "PATH | none", SLOT_B,
+           "Second slot."),
     OPTION(CONFIG_PATH_TO, database, 0, ROOM(database), NULL, "database", "PATH",
            "/var/lib/landmass-panel/database.lmdb",
-           "The database in flash: a file, or an MTD device such as /dev/mtd0."),
+           "Where no slot is whole: the database in flash, a file, or an MTD device such as "
+           "/dev/mtd0."),
     OPTION(CONFIG_PATH_TO, database_key, 0, ROOM(database_key), "none", "database.key",
            "PATH | none", "none",
            "Public keys of those who may sign the database, up to eight in a PEM file."),

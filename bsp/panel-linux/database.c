@@ -1,7 +1,5 @@
 #include "database.h"
 
-#include "drv/flash_file.h"
-#include "drv/flash_mtd.h"
 #include "report.h"
 #include "trust/serial.h"
 #include "trust/verify.h"
@@ -136,24 +134,4 @@ struct database database_judge(const struct config *c, const struct lm_flash *fl
                trust_remedy(r.verdict));
         return (struct database){0};
     }
-}
-
-bool database_check(const struct config *c)
-{
-    struct drv_flash_mtd mtd;
-    struct drv_flash_file file;
-    if (drv_flash_mtd_open(&mtd, c->database) == 0) {
-        const bool is_flown = database_judge(c, &mtd.port, true).is_flown;
-        drv_flash_mtd_close(&mtd);
-        return is_flown;
-    }
-    const int cause = drv_flash_file_open(&file, c->database);
-    if (cause != 0) {
-        report(REPORT_WARNING, "%s: %s; its signature was not checked", c->database,
-               strerror(cause));
-        return true;
-    }
-    const bool is_flown = database_judge(c, &file.port, true).is_flown;
-    drv_flash_file_close(&file);
-    return is_flown;
 }

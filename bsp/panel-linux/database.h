@@ -25,8 +25,4 @@ struct database {
 struct database database_judge(const struct config *config, const struct lm_flash *flash,
                                bool is_check);
 
-/* The same for --check: opens the database that the configuration names. True if it would be flown,
- * or if there is none to be looked at. */
-bool database_check(const struct config *config);
-
 #endif

@@ -129,10 +129,12 @@ static void report_flags(struct panel *p, uint64_t now_us)
     if (now_us < p->tell_us || (is_told && p->count.steps > 1)) {
         return;
     }
+    const char *const slot = p->storage.trouble;
     char words[128], status[192];
     name_flags(flags, words, sizeof words);
-    snprintf(status, sizeof status, "STATUS=%s%s%s", words[0] != '\0' ? words : "no fault",
-             trouble != NULL ? "; " : "", trouble != NULL ? trouble : "");
+    snprintf(status, sizeof status, "STATUS=%s%s%s%s%s", words[0] != '\0' ? words : "no fault",
+             slot != NULL ? "; " : "", slot != NULL ? slot : "", trouble != NULL ? "; " : "",
+             trouble != NULL ? trouble : "");
     drv_watchdog_notify(&p->watchdog, status);
     report(REPORT_NOTICE, "the glass says: %s", words[0] != '\0' ? words : "no fault");
     p->flags_told = flags;

@@ -1,8 +1,8 @@
 /* landmass-panel: the display unit's firmware as an installed cockpit panel. */
 #include "config.h"
-#include "database.h"
 #include "panel.h"
 #include "report.h"
+#include "storage.h"
 
 #include "bus/table_text.h"
 #include "hs/error.h"
@@ -144,7 +144,7 @@ static bool are_files_sound(const struct config *config)
     for (size_t i = 0; i < 2; i++) {
         is_sound = (paths[i][0] == '\0' || bus_table_load(&table, paths[i]) == 0) && is_sound;
     }
-    return database_check(config) && is_sound;
+    return storage_check(config) && is_sound;
 }
 
 int main(int argc, char **argv)

@@ -30,35 +30,10 @@ uint64_t panel_now_us(const struct panel *p)
     return monotonic_us() - p->zero_us;
 }
 
-/* An MTD device, or anything else that can be read like a file. NULL when neither can be opened. */
-static const struct lm_flash *open_slow_flash(struct panel *p)
-{
-    const char *path = p->config->database;
-    int cause = drv_flash_mtd_open(&p->mtd, path);
-    if (cause == 0) {
-        report(REPORT_INFO, "%s: %u good erase blocks of %u bytes, %u bad ones", path,
-               p->mtd.block_count, p->mtd.block_bytes, p->mtd.count.bad_blocks);
-        return &p->mtd.port;
-    }
-    if (cause == ENOTTY) {
-        cause = drv_flash_file_open(&p->file, path);
-        if (cause == 0) {
-            return &p->file.port;
-        }
-    }
-    report(REPORT_ERROR, "%s: %s; the database is made by landmass-db build", path,
-           strerror(cause));
-    return NULL;
-}
-
 static const struct lm_flash *open_flash(struct panel *p)
 {
-    const struct lm_flash *slow = open_slow_flash(p);
+    const struct lm_flash *slow = storage_open(&p->storage, p->config, false, &p->database);
     if (slow == NULL) {
-        return &drv_no_flash;
-    }
-    p->database = database_judge(p->config, slow, false);
-    if (!p->database.is_flown) {
         return &drv_no_flash;
     }
     const int cause = drv_flash_reader_start(&p->flash, slow);
@@ -83,23 +58,23 @@ static void start_with_flash(struct panel *p, const struct lm_flash *flash)
     recording_begin(&p->recording, &p->board, panel_now_us(p));
     if (lm_unit_init(p->unit, &p->board) != LM_OK) {
         report(REPORT_ERROR, "%s: its coarsest level has too many tiles; raise the option tiles",
-               p->config->database);
+               p->storage.path);
         p->board.flash = &drv_no_flash;
         recording_begin(&p->recording, &p->board, panel_now_us(p));
         (void)lm_unit_init(p->unit, &p->board);
     } else if (p->unit->map.open_status == LM_ERR_VERSION) {
         report(REPORT_ERROR,
                "%s: an image of another version; `landmass-db convert` renews old ones",
-               p->config->database);
+               p->storage.path);
     } else if (p->unit->map.open_status == LM_ERR_SENSOR) {
         report(REPORT_ERROR,
                "%s: its reflectivity is of band %s, the radar's is %s; build it for "
                "this radar",
-               p->config->database, lm_sensor_word(p->unit->map.db.sensor),
+               p->storage.path, lm_sensor_word(p->unit->map.db.sensor),
                lm_sensor_word(p->unit->map.radar->sensor));
     } else if (!p->unit->map.is_usable && flash != &drv_no_flash) {
         report(REPORT_ERROR, "%s: not a database for this firmware; landmass-db verify tells why",
-               p->config->database);
+               p->storage.path);
     }
 }
 
@@ -268,7 +243,7 @@ int panel_open(struct panel *p, const struct config *config)
 {
     memset(p, 0, sizeof *p);
     p->config = config;
-    p->file.descriptor = p->mtd.fd = p->bezel.gpio.fd = p->bezel.backlight_fd = -1;
+    p->bezel.gpio.fd = p->bezel.backlight_fd = -1;
     p->bus.socket.fd = p->bus_2.socket.fd = -1;
     p->zero_us = monotonic_us();
     p->signals = open_signals();
@@ -305,10 +280,7 @@ void panel_close(struct panel *p)
     bus_close(&p->bus);
     bus_close(&p->bus_2);
     drv_flash_reader_stop(&p->flash);
-    drv_flash_mtd_close(&p->mtd);
-    if (p->file.descriptor >= 0) {
-        drv_flash_file_close(&p->file);
-    }
+    storage_close(&p->storage);
     if (p->signals >= 0) {
         close(p->signals);
     }

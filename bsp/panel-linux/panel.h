@@ -9,14 +9,13 @@
 #include "config.h"
 #include "database.h"
 #include "display.h"
-#include "drv/flash_file.h"
-#include "drv/flash_mtd.h"
 #include "drv/flash_reader.h"
 #include "drv/watchdog.h"
 #include "hand_controller.h"
 #include "lm/unit.h"
 #include "recording.h"
 #include "settings_file.h"
+#include "storage.h"
 
 enum {
     PANEL_TICK_US = 2000, /* time between steps: at the fastest scale a line is due every 2 ms */
@@ -26,8 +25,7 @@ enum {
 struct panel {
     const struct config *config; /* borrowed */
     uint64_t zero_us;            /* time of CLOCK_MONOTONIC at which the panel's clock is 0 */
-    struct drv_flash_file file;
-    struct drv_flash_mtd mtd;
+    struct storage storage;
     struct drv_flash_reader flash;
     struct database database;
     struct bus bus, bus_2;

@@ -1,12 +1,13 @@
 # landmass-panel: the installed cockpit panel. Built with the tests for this machine, and by `make panel` for ARCH.
 LIB_panel := $(O)/libpanel.a
 $(call archive, $(LIB_panel), $(filter-out %/main.c,$(wildcard bsp/panel-linux/*.c)))
-# It reads tables of the bus, and checks signatures, by the libraries of the tools.
+# It reads tables of the bus and slots, and checks signatures, by the libraries of the tools.
 PANEL_READER := $(call objs,host-sim/bus/table_text.c \
+    $(patsubst %,host-sim/slots/%.c,check medium_file medium_mtd slot) \
     $(patsubst %,host-sim/trust/%.c,crypto head keys seal serial verify) \
     $(patsubst %,host-sim/lib/%.c,atomic_file error input_file json number output_path report))
 $(O)/bsp/panel-linux/%.o $(O)/sanitized/bsp/panel-linux/%.o: EXTRA_CFLAGS := \
-    $(patsubst %,-Ihost-sim/%/include,bus lib trust)
+    $(patsubst %,-Ihost-sim/%/include,bus lib slots trust)
 PANEL := $(O)/bin/landmass-panel
 PROGRAMS += $(PANEL)
 $(PANEL): $(O)/bsp/panel-linux/main.o $(PANEL_READER) $(LIB_panel) $(LIB_record) $(LIB_drivers) $(LIB_firmware) $(LIB_fixed)

@@ -45,7 +45,7 @@ $(call unit_tests, fixed,                       tables lib fixed,               
 $(foreach room,$(ROOMS),$(call unit_tests, firmware/$(room), reference lib firmware fixed drivers, , proj zlib))
 $(foreach kind,bezel can display flash gpio usb watchdog,$(call unit_tests, drivers/$(kind), lib firmware fixed drivers, , zlib libdrm libusb-1.0 -pthread))
 $(call unit_tests, drivers,                     lib fixed drivers)
-$(call unit_tests, bsp/panel-linux,             trust bus lib firmware fixed drivers, ,             libusb-1.0 libgpiod -pthread)
+$(call unit_tests, bsp/panel-linux,             slots trust bus lib firmware fixed drivers, ,             libusb-1.0 libgpiod -pthread)
 
 $(call unit_tests, host-sim/lib,                gis lib fixed firmware,               db)
 $(call unit_tests, host-sim/classify,           classify gis lib)

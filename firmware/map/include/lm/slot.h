@@ -15,13 +15,13 @@
 enum { LM_SLOTS = 2, LM_SLOT_COPIES = 2, LM_SLOT_VERSION = 1 };
 
 /* What a slot holds. Anything else than a whole image is not flown. */
-enum lm_slot_state { LM_SLOT_LOADING = 1, LM_SLOT_WHOLE };
+enum lm_slot_content { LM_SLOT_LOADING = 1, LM_SLOT_WHOLE };
 
 /* Record of a slot, little-endian. */
 struct lm_slot_record {
     char magic[8];       /* "LMDBSLOT" */
     uint32_t version;    /* LM_SLOT_VERSION */
-    uint32_t state;      /* enum lm_slot_state */
+    uint32_t state;      /* enum lm_slot_content */
     uint64_t generation; /* of the record: of two sound copies the later one counts */
     uint64_t sequence;   /* of the load: of two whole slots the later one is flown; from 1 */
     uint64_t image_bytes;

@@ -69,6 +69,7 @@ static struct config nothing_fitted(void)
     c.glass_picture = (struct config_size){WIDTH, HEIGHT};
     c.database_trust = 1; /* any */
     c.database_serial[0] = '\0';
+    c.slot_a[0] = c.slot_b[0] = '\0';
     snprintf(c.database, sizeof c.database, "/nowhere/database.lmdb");
     return c;
 }
