@@ -27,7 +27,7 @@ $(call host_library, sim,          nav lib fixed firmware,                      
 $(call host_library, tables,       lib fixed firmware.h)
 
 $(call host_program, db,        vectors visual build infrared terrain resample reflectivity classify radar trust bus image gis lib fixed firmware)
-$(call host_program, load,      slots lib fixed firmware drivers)
+$(call host_program, load,      slots trust lib fixed firmware drivers)
 $(call host_program, radar,     radar image lib fixed firmware)
 $(call host_program, target,    tracer visual gis lib fixed firmware)
 $(call host_program, netem,     netem tracer realradar gis lib fixed firmware)

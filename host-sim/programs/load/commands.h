@@ -34,6 +34,12 @@ struct load_places {
 
 int load_places_find(struct load_places *p);
 
+/* Who signed the image behind `flash`? Error unless the configuration accepts it. At `full` length
+ * every byte is read, else the signature alone. Returns 0, or -1 with the error reported. */
+enum load_length { LOAD_SIGNATURE, LOAD_FULL };
+int load_accept(const struct slot_places *c, const char *path, const struct lm_flash *flash,
+                enum load_length length);
+
 /* Open both slots to read, and judge them. */
 void load_judge(struct slot slots[LM_SLOTS], const struct load_places *p, enum slot_depth depth);
 

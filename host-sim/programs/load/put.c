@@ -27,6 +27,8 @@ struct put {
     struct slot slots[LM_SLOTS];
     struct hs_progress bar;
     const char *label; /* of the bar */
+    const char *key;   /* options; NULL: of the configuration */
+    bool is_any, is_older;
 };
 
 static void move_bar(struct put *p, const char *label, uint64_t done, uint64_t total)
@@ -181,6 +183,9 @@ static int put(struct put *p)
     struct slot *s = &p->slots[target];
     int result = slot_fill(s, &p->source.port, writing, checking_slot, p, &load);
     hs_progress_end(&p->bar);
+    if (result == 0 && load_accept(&p->places.places, s->path, &s->port, LOAD_FULL) != 0) {
+        return -1;
+    }
     if (result == 0) {
         result = slot_switch(s, &p->slots[target ^ 1], &load);
     }
@@ -193,11 +198,23 @@ static int put(struct put *p)
     return 0;
 }
 
+static int take_options(struct put *p)
+{
+    struct slot_places *c = &p->places.places;
+    c->is_any = c->is_any || p->is_any;
+    c->is_older = c->is_older || p->is_older;
+    if (p->key && snprintf(c->key, sizeof c->key, "%s", p->key) >= (int)sizeof c->key) {
+        return hs_error(p->key, "choose a shorter one", "the path is too long");
+    }
+    return 0;
+}
+
 int load_cmd_put(int argc, char **argv)
 {
     static const struct hs_usage usage = {
         "put", "put a database into the slot that is not flown, and switch to it",
-        "Checks the file, writes it, reads every record back, and then says in one step that the "
+        "Checks the file and its signature, writes it, reads every record back, and then says in "
+        "one step that the "
         "slot is whole. Until then the panel flies on, and would start, with the other slot.\n"
         "It may be cut off at any moment, by a signal or with the power. Run again, it goes on: "
         "what is there already is compared, not written."};
@@ -207,15 +224,23 @@ int load_cmd_put(int argc, char **argv)
         {"FILE", HS_INPUT_ARGUMENT, &p.file, 0, 0, NULL,
          "the database image, or a folder with one of the name landmass.lmdb", true},
         LOAD_PLACES_OPTIONS(p.places),
+        {"key", HS_INPUT, &p.key, 0, 0, "FILE",
+         "public keys of those who may sign it, PEM; left out: the configuration's", false},
+        {"unsigned", HS_FLAG, &p.is_any, 0, 0, NULL,
+         "take it though none of them has signed it, as with database.trust = any", false},
+        {"older", HS_FLAG, &p.is_older, 0, 0, NULL,
+         "take a lower serial number than one that was flown, as with database.older = fly", false},
     };
     if (!hs_options_read(&usage, options, sizeof options / sizeof options[0], argc, argv,
                          &exit_code)) {
         return exit_code;
     }
-    if (load_places_find(&p.places) != 0 || open_file(&p) != 0) {
+    if (load_places_find(&p.places) != 0 || take_options(&p) != 0 || open_file(&p) != 0) {
         return HS_EXIT_FAILED;
     }
-    int result = check_file(&p);
+    int result = check_file(&p) == 0
+                     ? load_accept(&p.places.places, p.file, &p.source.port, LOAD_SIGNATURE)
+                     : -1;
     if (result == 0) {
         load_judge(p.slots, &p.places, SLOT_TABLES);
         result = put(&p);

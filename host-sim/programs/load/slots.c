@@ -14,9 +14,7 @@
 
 int load_places_find(struct load_places *p)
 {
-    const bool is_needed = !p->path[0] || !p->path[1];
-    p->places = (struct slot_places){0};
-    if (is_needed && slot_places_read(&p->places, p->config) != 0) {
+    if (slot_places_read(&p->places, p->config) != 0) {
         return -1;
     }
     for (int i = 0; i < LM_SLOTS; i++) {

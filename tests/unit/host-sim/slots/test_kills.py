@@ -46,7 +46,7 @@ def prepare():
 
 
 def put(number, **options):
-    return subprocess.Popen([LOAD, "put", here("image%d" % number), *SLOTS], stdout=subprocess.DEVNULL,
+    return subprocess.Popen([LOAD, "put", here("image%d" % number), "--unsigned", *SLOTS], stdout=subprocess.DEVNULL,
                             stderr=subprocess.DEVNULL, **options)
 
 

@@ -740,15 +740,15 @@ SLOTS = ["--slot-a", os.path.join(WORK, "slot-a"), "--slot-b", os.path.join(WORK
 
 
 def load_put():
-    document, text = run("load", "put", here("image.lmdb"), *SLOTS)
+    document, text = run("load", "put", here("image.lmdb"), "--unsigned", *SLOTS)
     r = document["report"]
     load, written, kept = find(r"^slot A: load (\d+), (\d+) bytes written, (\d+) were there;", text)
     assert (r["load"], r["written_bytes"], r["kept_bytes"]) == (load, written, kept)
     assert r["slot"] == here("slot-a") and r["is_there_already"] is False and r["bad_blocks"] == 0
     assert r["image_bytes"] == os.path.getsize(here("image.lmdb")) == written + kept
-    document, text = run("load", "put", here("image.lmdb"), *SLOTS)
+    document, text = run("load", "put", here("image.lmdb"), "--unsigned", *SLOTS)
     assert document["report"]["is_there_already"] is True and "already" in text
-    document, _ = run("load", "put", here("damaged.lmdb"), *SLOTS, code=1)
+    document, _ = run("load", "put", here("damaged.lmdb"), "--unsigned", *SLOTS, code=1)
     assert "nothing was written" in document["messages"][-1]["remedy"] and document["files"] == []
 
 

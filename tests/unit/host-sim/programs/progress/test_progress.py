@@ -36,7 +36,7 @@ COMMANDS = [
     (["db", "build", "--classes", CLASSES, "--terrain", here("scene/terrain.tif"), "--class-raster", here("scene/truth.tif"),
       "--detail", here("scene/detail.txt"), "--out", here("image.lmdb")], ["facings", "building", "storing tiles"]),
     (["db", "verify", here("image.lmdb")], ["verifying"]),
-    (["load", "put", here("image.lmdb"), "--slot-a", here("slot-a"), "--slot-b", here("slot-b")],
+    (["load", "put", here("image.lmdb"), "--unsigned", "--slot-a", here("slot-a"), "--slot-b", here("slot-b")],
      ["checking the file", "writing", "checking the slot"]),
     (["load", "verify", "--slot-a", here("slot-a"), "--slot-b", here("slot-b")], ["checking slot A"]),
     (["db", "export", here("image.lmdb"), "--out", here("planes")], ["elevation"]),
