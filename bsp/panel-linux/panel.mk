@@ -15,7 +15,7 @@ PANEL_LIBS = $(LINUX_LIBS) $(call pkgs,libs,libcrypto)
 $(PANEL): LDLIBS = $(PANEL_LIBS)
 
 .PHONY: panel-program panel-package
-panel-package: $(PANEL)
+panel-package: $(PANEL) $(O)/bin/landmass-load
 	@STRIP=$(TRIPLET)-strip OBJDUMP=$(TRIPLET)-objdump \
 	    sh bsp/panel-linux/debian/build.sh $(ARCH) $(PANEL) build/packages $(RUN)
 panel-program: $(PANEL)

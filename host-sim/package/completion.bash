@@ -40,5 +40,5 @@ _landmass() {
     fi
 }
 
-complete -F _landmass landmass-bus landmass-db landmass-dis landmass-nav landmass-netem \
+complete -F _landmass landmass-bus landmass-db landmass-dis landmass-load landmass-nav landmass-netem \
     landmass-radar landmass-realradar landmass-reference landmass-scene landmass-sim landmass-target

@@ -152,6 +152,18 @@ static int sync_folder(const char *path)
     return cause;
 }
 
+/* A file that root makes belongs to the owner of its folder, the panel's user. */
+static void give_to_owner(int fd, const char *path)
+{
+    struct stat folder;
+    char copy[PATH_MAX];
+    snprintf(copy, sizeof copy, "%s", path);
+    if (geteuid() == 0 && stat(dirname(copy), &folder) == 0 &&
+        fchown(fd, folder.st_uid, folder.st_gid) != 0) {
+        return; /* a file system without owners */
+    }
+}
+
 /* Devices are often named by links; a link in the place of a file could lead anywhere. */
 static int open_one(const char *path, enum slot_use use, int *fd)
 {
@@ -170,6 +182,7 @@ static int open_one(const char *path, enum slot_use use, int *fd)
     }
     if (use == SLOT_TO_WRITE && S_ISREG(about.st_mode)) {
         (void)fchmod(*fd, FILE_MODE); /* whatever the mask of the process */
+        give_to_owner(*fd, path);
     }
     return 0;
 }

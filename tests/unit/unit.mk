@@ -124,7 +124,7 @@ $(eval $(call unit_script,host-sim/slots/test_kills.py))
 $(eval $(call unit_script,host-sim/slots/test_plants.sh))
 $(eval $(call unit_script,host-sim/programs/nav/test_nav_live.py))
 $(eval $(call unit_script,host-sim/programs/progress/test_progress.py))
-$(UNIT)/bsp/panel-linux/test_package: $(PANEL) $(wildcard bsp/panel-linux/debian/*)
+$(UNIT)/bsp/panel-linux/test_package: $(PANEL) $(O)/bin/landmass-load $(wildcard bsp/panel-linux/debian/*)
 $(UNIT)/host-sim/package/test_package: $(PROGRAMS) $(O)/ios/.made $(wildcard host-sim/package/*)
 $(UNIT)/host-sim/programs/dis/test_dis: | $(O)/bin/landmass-dis
 $(UNIT)/host-sim/programs/nav/test_nav_live: | $(O)/bin/landmass-nav

@@ -17,6 +17,12 @@ fill() { sed -e "s/@VERSION@/$version/" -e "s/@ARCH@/$arch/" -e "s/@DATE@/$date/
 
 put 755 "$program" usr/sbin/landmass-panel
 "${STRIP:-strip}" "$root/usr/sbin/landmass-panel"
+load=$(dirname "$program")/landmass-load
+put 755 "$load" usr/bin/landmass-load
+"${STRIP:-strip}" "$root/usr/bin/landmass-load"
+put 644 "$here/landmass-load@.service" lib/systemd/system/landmass-load@.service
+put 644 "$here/landmass-load.udev" lib/udev/rules.d/90-landmass-load.rules
+put 644 "$here/../../../host-sim/package/completion.bash" usr/share/bash-completion/completions/landmass-load
 put 644 "$here/landmass-panel.service" lib/systemd/system/landmass-panel.service
 put 644 "$here/landmass-panel.udev" lib/udev/rules.d/60-landmass-panel.rules
 put 644 "$here/landmass-panel.sysctl" usr/lib/sysctl.d/60-landmass-panel.conf
@@ -32,6 +38,12 @@ awk -v as=man -f "$here/options.awk" "$root/options" >"$root/options.man"
 fill "$here/landmass-panel.8.in" | sed -e "/@OPTIONS@/r $root/options.man" -e '/@OPTIONS@/d' |
     gzip -9n >"$root/usr/share/man/man8/landmass-panel.8.gz"
 rm "$root/options" "$root/options.man"
+man1=$root/usr/share/man/man1
+mkdir -p "$man1"
+$runner "$load" --help=man | gzip -9n >"$man1/landmass-load.1.gz"
+for command in put show verify; do
+    $runner "$load" "$command" --help=man | gzip -9n >"$man1/landmass-load-$command.1.gz"
+done
 doc=$root/usr/share/doc/landmass-panel
 gzip -9nc "$here/../../../docs/panel.md" >"$doc/panel.md.gz"
 gzip -9nc "$here/../../../CHANGELOG.md" >"$doc/CHANGELOG.md.gz"
@@ -60,7 +72,7 @@ echo /etc/landmass-panel.conf >"$root/DEBIAN/conffiles"
 install -m 755 "$here/postinst" "$here/prerm" "$here/postrm" "$root/DEBIAN"
 (cd "$root" && find etc lib usr -type f ! -path etc/landmass-panel.conf | LC_ALL=C sort | xargs md5sum) >"$root/DEBIAN/md5sums"
 find "$root" -type d -exec chmod 755 {} +
-chmod 644 "$root/etc/landmass-panel.conf" "$root"/usr/share/man/man8/* "$doc"/* "$root/DEBIAN/control" \
+chmod 644 "$root/etc/landmass-panel.conf" "$root"/usr/share/man/man[18]/* "$doc"/* "$root/DEBIAN/control" \
     "$root/DEBIAN/conffiles" "$root/DEBIAN/md5sums"
 
 mkdir -p "$out"

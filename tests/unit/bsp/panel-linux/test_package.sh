@@ -55,7 +55,9 @@ again=$(sh bsp/panel-linux/debian/build.sh "$arch" "$panel" "$work/again")
 cmp "$package" "$again"
 result $? 'the same program makes the same package, byte for byte'
 dpkg-deb -x "$package" "$work/root" && dpkg-deb -e "$package" "$work/control"
-for file in usr/sbin/landmass-panel lib/systemd/system/landmass-panel.service lib/udev/rules.d/60-landmass-panel.rules \
+for file in usr/sbin/landmass-panel usr/bin/landmass-load lib/systemd/system/landmass-load@.service \
+    lib/udev/rules.d/90-landmass-load.rules usr/share/man/man1/landmass-load-put.1.gz \
+    usr/share/bash-completion/completions/landmass-load lib/systemd/system/landmass-panel.service lib/udev/rules.d/60-landmass-panel.rules \
     usr/lib/sysctl.d/60-landmass-panel.conf usr/share/man/man8/landmass-panel.8.gz etc/landmass-panel.conf \
     usr/share/doc/landmass-panel/panel.md.gz usr/share/doc/landmass-panel/copyright; do
     [ -s "$work/root/$file" ] || echo "# $file is missing" >>"$work/missing"
@@ -92,13 +94,25 @@ else
 fi
 if command -v systemd-analyze >/dev/null; then
     sed "s|/usr/sbin/landmass-panel|$PWD/$panel|" "$work/root/lib/systemd/system/landmass-panel.service" >"$work/landmass-panel.service"
-    systemd-analyze verify --man=no "$work/landmass-panel.service" 2>&1 | sed 's/^/# /' | grep landmass >"$work/said"
+    sed "s|/usr/bin/landmass-load|$PWD/$build/bin/landmass-load|" "$work/root/lib/systemd/system/landmass-load@.service" \
+        >"$work/landmass-load@.service"
+    systemd-analyze verify --man=no "$work/landmass-panel.service" "$work/landmass-load@sdb1.service" 2>&1 | sed 's/^/# /' |
+        grep landmass >"$work/said"
     [ ! -s "$work/said" ] || cat "$work/said"
     [ ! -s "$work/said" ]
-    result $? 'systemd finds nothing wrong with the service'
+    result $? 'systemd finds nothing wrong with its services'
 else
     echo "ok $((number = number + 1)) # SKIP systemd finds nothing wrong with the service"
     echo '# skipped: systemd-analyze is missing'
+fi
+if udevadm verify --help >/dev/null 2>&1; then
+    udevadm verify "$work"/root/lib/udev/rules.d/*.rules >"$work/said" 2>&1
+    status=$?
+    sed 's/^/# /' "$work/said"
+    result $status 'udev finds nothing wrong with its rules'
+else
+    echo "ok $((number = number + 1)) # SKIP udev finds nothing wrong with its rules"
+    echo '# skipped: udevadm cannot verify: systemd is older than 254'
 fi
 if command -v lintian >/dev/null; then
     cp "$package" "$work/stripped.deb"
