@@ -19,8 +19,8 @@ struct slot_places {
 };
 
 /* The options slot.a, slot.b and database.* of a panel's configuration; other lines are passed
- * over. Without the file at SLOT_CONFIG all are the defaults. Returns 0, or -1 with the error reported: another
- * file cannot be read, a path is too long, or a slot is `none`. */
+ * over. Without the file at SLOT_CONFIG all are the defaults. Returns 0, or -1 with the error
+ * reported: another file cannot be read, a path is too long, or a slot is `none`. */
 int slot_places_read(struct slot_places *places, const char *config);
 
 #endif
