@@ -5,13 +5,24 @@
  * the item that is sent next is the step or one of the oldest control told.
  *
  * Proved, for any state that keeps it: any frame, any control told and any answer of the driver
- * keep it; no access outside an object, no shift too wide. A control that is handed out is of the
- * kind that its items say, never an LM_CONTROL_ENVIRONMENT.
+ * keep it; no access outside an object, no shift too wide. prove_kind: a set that was heard has the
+ * kind that its items say, never an LM_CONTROL_ENVIRONMENT. How it is handed out is not proved.
+ *
+ * An angle is converted to any angle here; prove_angles is about the conversions.
  *
  * Assumed: a control that the unit tells has one of the kinds. */
-#include "firmware/bus/canas_control.c"
-
+#include "lm/units.h"
 #include "prove.h"
+
+void prove_angles(void)
+{
+    (void)lm_bam_of_ten_millionths(nondet_u32());
+    (void)lm_ten_millionths_of_bam(nondet_u32());
+}
+
+#define lm_bam_of_ten_millionths(word)  ((void)(word), nondet_u32())
+#define lm_ten_millionths_of_bam(angle) ((void)(angle), nondet_u32())
+#include "firmware/bus/canas_control.c"
 
 struct lm_canas_control nondet_canas_control(void);
 struct lm_can_frame nondet_frame(void);
@@ -65,20 +76,17 @@ void prove_take(void)
     }
 }
 
-void prove_next(void)
+struct lm_control_words nondet_words(void);
+
+void prove_kind(void)
 {
-    struct lm_canas_control c = nondet_canas_control();
-    const struct lm_control before = nondet_control();
-    struct lm_control control = before;
-    ASSUME(is_ring_kept(&c.heard));
-    const struct lm_control_words heard = c.heard.words[c.heard.tail % LM_CONTROL_RING];
+    const struct lm_control_words heard = nondet_words();
     ASSUME(is_heard_sound(&heard));
-    const bool is_there = lm_canas_control_next(&c, &control);
-    PROVE(is_ring_kept(&c.heard));
-    if (is_there) {
-        PROVE((uint32_t)control.kind < LM_CONTROL_KINDS && control.kind != LM_CONTROL_ENVIRONMENT);
-        PROVE(kinds[control.kind].first == heard.first);
-    }
+    const enum lm_control_kind kind = kind_of(&heard);
+    PROVE((uint32_t)kind < LM_CONTROL_KINDS && kind != LM_CONTROL_ENVIRONMENT);
+    PROVE(kinds[kind].first == heard.first);
+    PROVE(heard.first != LM_CONTROL_ITEM_SWITCH || kinds[kind].act == heard.word[0] ||
+          (kind == LM_CONTROL_FREEZE && heard.word[0] == LM_CONTROL_SWITCH_RELEASE));
 }
 
 void prove_tell(void)
