@@ -21,9 +21,9 @@ static bool is_within(int32_t value, int32_t most)
 
 static bool is_kept(const struct lm_page *p)
 {
-    const bool is_scan = p->mode < LM_SECTOR_MODES && p->fov < LM_FOVS &&
+    const bool is_scan = p->mode < LM_SECTOR_CHOICES && p->fov < LM_FOVS &&
                          p->azimuth_index < LM_AZIMUTHS &&
-                         p->fov <= lm_radar_default.mode[p->mode].fov_last &&
+                         p->fov <= lm_radar_mode(&lm_radar_default, p->mode)->fov_last &&
                          p->range_index <= lm_radar_range_last(&lm_radar_default, p->mode, p->fov);
     return is_scan && p->format < LM_FORMATS && p->hidden >> LM_OSBS == 0 &&
            is_within(p->gain_db, LM_GAIN_MAX_DB) && is_within(p->knob, LM_FULL_DEFLECTION) &&
@@ -66,7 +66,7 @@ void prove_command(void)
         break;
     case 2:
         effects = lm_page_select_sector(&p, a, b);
-        is_sound = a >= 0 && a < LM_SECTOR_MODES && b >= 0 && b < LM_FOVS;
+        is_sound = a >= 0 && a < LM_SECTOR_CHOICES && b >= 0 && b < LM_FOVS;
         break;
     case 3:
         effects = lm_page_set_gain(&p, a);
