@@ -17,7 +17,7 @@ if [ "${2:-}" = count ]; then
         printf '%s\n' '0 range 10' '5 gm exp'
         awk '$2 == "sar" { print 10, $2, $3, $4, $5; print 16, $2, $3, $4, 5; exit }' $run/flight.script
         printf '%s\n' '22 gm dbs1' '29 gm dbs2' '36 gmt' '41 sea' '44 bcn' '46 gm'
-        awk '$2 == "sar" { print 50.3, "cursor", $3, $4; print 50.4, "track"; exit }' $run/flight.script
+        awk '$2 == "sar" { print 50.0, "cursor", $3, $4; print 50.4, "track"; exit }' $run/flight.script
     } >build/zcu102/bench/script
     # shellcheck disable=SC2086 # words
     exec python3 -B tests/zcu102/bench.py $flight --script build/zcu102/bench/script --out build/zcu102/bench

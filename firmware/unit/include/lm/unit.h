@@ -103,7 +103,7 @@ struct lm_board {
 enum { LM_FRAME_US = 33333, LM_BUS_SILENT_US = 1000000 };
 
 /* A glass_step_px that keeps each step of docs/zcu102.md below a line's 390,000 instructions. */
-enum { LM_GLASS_STEP_PX = 32768 };
+enum { LM_GLASS_STEP_PX = 28672 };
 
 /* Steps that a frame takes at most, from its surface lent to the surface shown. */
 enum { LM_FRAME_STEPS = 64 };
