@@ -8,7 +8,7 @@ $(O)/tests/panel-vm/count_malloc.o: EXTRA_CFLAGS := -fPIC
 $(PANEL_VM)/count_malloc.so: $(O)/tests/panel-vm/count_malloc.o
 $(PANEL_VM)/count_malloc.so: LDFLAGS := -shared
 
-PANEL_VM_TESTS := $(addprefix $(PANEL_VM)/,test_bus test_panel test_flash test_two)
+PANEL_VM_TESTS := $(addprefix $(PANEL_VM)/,test_bus test_panel test_flash test_two test_dis)
 ifeq ($(BOARD),bench-linux)
 TESTS += $(PANEL_VM_TESTS)
 endif
