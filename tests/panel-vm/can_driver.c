@@ -153,7 +153,7 @@ static bool is_wanted(canid_t id)
     const uint32_t *o = bus.count.outcome;
     const bool is_control =
         id > LM_CONTROL_ID + LM_CONTROL_ITEM_STEP && id < LM_CONTROL_ID + LM_CONTROL_ITEMS;
-    return id == LM_CANAS_REQUEST_ID || is_control ||
+    return id == LM_CANAS_REQUEST_ID || id == LM_BUS_SWAP_ID || is_control ||
            !(o[LM_BUS_NOT_DATA] || o[LM_BUS_FOREIGN] || o[LM_BUS_OTHER_CHANNEL] ||
              o[LM_BUS_SERVICE] || o[LM_BUS_UNUSED]);
 }
