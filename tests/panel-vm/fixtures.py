@@ -77,6 +77,12 @@ def database(name):
     return path
 
 
+def unsigned_database():
+    """The sound database before it was signed; its path."""
+    database("small")
+    return os.path.join(WORK, "small-plain.lmdb")
+
+
 def tree(*programs, files=(), package=True, arch="arm64"):
     """A folder for a Machine: the panel's package, and in /t test programs of this folder and `files`."""
     top = os.path.join(WORK, "tree-" + arch)

@@ -3,7 +3,7 @@
 import os
 
 from cases import case, expect, main
-from fixtures import database, log, public_key, tree
+from fixtures import database, log, public_key, tree, unsigned_database
 from machine import Machine
 from panel import Panel, fly, is_fine
 
@@ -12,7 +12,7 @@ CHIP = "id_bytes=0x20,0xa2,0x00,0x15 parts=128"  # NAND of 64 MiB, its first 16 
 
 
 def boot():
-    return Machine("amd64", tree=tree(files=[log("still"), database("small"), public_key()], arch="amd64"),
+    return Machine("amd64", tree=tree(files=[log("still"), database("small"), unsigned_database(), public_key()], arch="amd64"),
                    devices=["-device", "virtio-gpu-pci,xres=640,yres=480"])
 
 
@@ -21,9 +21,9 @@ def prepare(m):
     fly(m)
 
 
-def start(m):
+def start(m, **settings):
     """The panel on /dev/mtd0."""
-    return Panel(m, database="/dev/mtd0", bezel=False)
+    return Panel(m, database="/dev/mtd0", bezel=False, **settings)
 
 
 def shows_map(m):
@@ -39,12 +39,12 @@ def change_chip(m, module):
     m.do("modprobe " + module)
 
 
-def write_nand(m, bad=()):
-    """Write the database as nandwrite does, block after block, the bad ones left out."""
-    blocks = (os.path.getsize(database("small")) + BLOCK - 1) // BLOCK
+def write_nand(m, bad=(), path="/t/small.lmdb"):
+    """Write a database as nandwrite does, block after block, the bad ones left out."""
+    blocks = int(m.do("stat -c %%s %s" % path)) // BLOCK + 1
     good = [number for number in range(blocks + len(bad)) if number not in bad][:blocks]
-    m.do("n=0; for to in %s; do dd if=/t/small.lmdb of=/dev/mtd0 bs=%d skip=$n seek=$to count=1 conv=notrunc,sync "
-         "2>/tmp/dd || cat /tmp/dd; n=$((n + 1)); done" % (" ".join(map(str, good)), BLOCK), 120)
+    m.do("n=0; for to in %s; do dd if=%s of=/dev/mtd0 bs=%d skip=$n seek=$to count=1 conv=notrunc,sync "
+         "2>/tmp/dd || cat /tmp/dd; n=$((n + 1)); done" % (" ".join(map(str, good)), path, BLOCK), 120)
 
 
 @case("a database in NOR flash is shown")
@@ -70,15 +70,28 @@ def flipped_bits(m):
     shows_map(m)
 
 
-@case("pages that lose their data are told on the glass, and the picture goes on")
-def lost_pages(m):
+def lose_pages(m, path):
+    """A chip with a database of which many pages can no longer be read."""
     pages = ",".join("%d:1" % page for page in range(1800, 3600, 16))  # as many as a parameter of a module has room for
     change_chip(m, "nandsim %s gravepages=%s" % (CHIP, pages))
-    write_nand(m)
+    write_nand(m, path=path)
     m.do("dd if=/dev/mtd0 of=/dev/null bs=%d 2>/dev/null" % BLOCK)  # once each of them can be read
-    p = start(m)
-    p.until(lambda text: "TILE" in text and "NAV FAIL" not in text)
+
+
+@case("pages that lose their data are told on the glass, and the picture goes on")
+def lost_pages(m):
+    lose_pages(m, "/t/small-plain.lmdb")
+    p = start(m, database__trust="any")
+    p.until(lambda text: "TILE" in text and "UNSIGNED" in text and "NAV FAIL" not in text)
     expect(p.is_alive(), "the display stands")
+
+
+@case("a signed database of which pages are lost is not flown: nobody can say what it was")
+def lost_signed_pages(m):
+    lose_pages(m, "/t/small.lmdb")
+    p = start(m)
+    p.until(lambda text: "DB FAIL" in text and "NAV FAIL" not in text)
+    expect("cannot be read" in p.said() and "check the medium" in p.said(), p.said())
 
 
 if __name__ == "__main__":

@@ -50,6 +50,16 @@ def press(seat, line):
     seat.machine.sleep(0.1)
 
 
+def has_target(seat):
+    """The tank comes, which is told once a second."""
+    for _ in range(30):
+        told = seat.report("live targets")
+        if ": 1 there" in told and " 0 torn, 0 refused" in told:
+            return True
+        seat.machine.sleep(0.5)
+    return False
+
+
 @case("two panels hear one bus, SWAP exchanges their pages, and one that restarts says so and has its page")
 def two(m):
     left = Seat(m, "left", **{"can.node": 20, "can.partner": 21, "glass.card": "/dev/dri/card0", **KEYS})
@@ -62,8 +72,7 @@ def two(m):
     right.until(is_in("GMT"))
     left.until(is_in("GM"))
     for seat in left, right:
-        told = seat.report("live targets")
-        expect(": 1 there" in told and " 0 torn, 0 refused" in told, told)
+        expect(has_target(seat), seat.report("live targets"))
     m.sleep(2)  # the settings are in their file
     right.stop()
     press(left, "OSB19")
