@@ -472,7 +472,7 @@ TEST(settings_that_are_damaged_are_not_taken)
     struct lm_settings kept;
     begin_two(&p);
     lm_settings_give(&p.b.r->unit, &kept);
-    kept.page[2] = LM_SECTOR_MODES;
+    kept.page[2] = LM_SECTOR_BEACON + 1;
     p.b.r->board.lent.settings = &kept;
     assert_int_equal(lm_unit_init(&p.b.r->unit, &p.b.r->board.lent), LM_OK);
     assert_false(p.b.r->unit.is_restored);
