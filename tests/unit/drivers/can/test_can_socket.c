@@ -122,11 +122,12 @@ static void assert_filtered_as_decoded(const struct filters *f, canid_t id)
     const bool is_unwanted = outcome[LM_BUS_NOT_DATA] || outcome[LM_BUS_FOREIGN] ||
                              outcome[LM_BUS_UNUSED] || outcome[LM_BUS_OTHER_CHANNEL] ||
                              outcome[LM_BUS_SERVICE];
-    /* Of the services only requests on channel 0 are heard; of controls all but the step. */
-    const bool is_service_or_control =
-        id == LM_CANAS_REQUEST_ID || (id > LM_CONTROL_ID && id < LM_CONTROL_ID + LM_CONTROL_ITEMS);
+    /* Of the services only requests on channel 0 are heard; of controls all but the step; and what
+     * a partner says. */
+    const bool is_for_the_unit = id == LM_CANAS_REQUEST_ID || id == LM_BUS_SWAP_ID ||
+                                 (id > LM_CONTROL_ID && id < LM_CONTROL_ID + LM_CONTROL_ITEMS);
     const bool is_wanted =
-        !is_unwanted || (f->profile->framing == LM_BUS_CANAEROSPACE && is_service_or_control);
+        !is_unwanted || (f->profile->framing == LM_BUS_CANAEROSPACE && is_for_the_unit);
     /* The one difference: 29 bits on channel 0 are left to the decoder, which counts them as
      * foreign. */
     const bool is_long_channel_0 = (id & CAN_EFF_FLAG) != 0 && (id & CAN_EFF_MASK) <= 0x7ff;
