@@ -88,9 +88,9 @@ def the_cursor_moves_and_designate_draws_a_patch(b):
     b.until(f"landmass.unit.value('cursorLongitude') > {before}")
     assert b.ask("landmass.deflection") == [0, 0]
     b.ask("landmass.patch(46.05, 11.15, 5) && 0")
-    b.until("landmass.unit.value('mode') === 3")
+    b.until("landmass.unit.describe().startsWith('SAR')")
     b.find("drop").click()
-    b.until("landmass.unit.value('mode') !== 3")
+    b.until("!landmass.unit.describe().startsWith('SAR')")
     b.driver.execute_script("landmass.told = 0; const {calls} = landmass.unit; "
                             "landmass.unit.calls = {...calls, designate: () => { landmass.told++; calls.designate(); }}")
     b.find("designate").click()
@@ -132,10 +132,10 @@ def a_gamepad_moves_the_cursor_flies_and_designates(b):
     b.until("(landmass.unit.value('cursorLongitude') | 0) * 360 / 2 ** 32 < 11.2")
     pad(b, [0, 0, 0, 0])
     pad(b, [0, 0, 0, 0], [0])
-    b.until("landmass.unit.value('mode') === 3")
+    b.until("landmass.unit.describe().startsWith('SAR')")
     pad(b, [0, 0, 0, 0], [0])  # held: one designation
     pad(b, [0, 0, 0, 0], [1])
-    b.until("landmass.unit.value('mode') !== 3")
+    b.until("!landmass.unit.describe().startsWith('SAR')")
     b.driver.execute_script("delete navigator.getGamepads")
 
 

@@ -1,11 +1,12 @@
 /* What happened in a flight, for a time line: acts of the operator and of the instructor, and what
  * the display did about them. */
+import {FOVS, MODES} from './unit.mjs';
+
 const MOST = 5000;
 
 /* Of lm/controls.h, by the number in a recording. */
 const CONTROLS = {8: 'freeze', 13: 'designate', 14: 'drop'};
-const MODES = ['GM', 'GMT', 'SEA', 'BCN', 'SAR'], FOVS = ['NORM', 'EXP', 'DBS1', 'DBS2'];
-const PATCH = 4;
+const PATCH = MODES.indexOf('SAR');
 const LINE = / (can[01]|unit) ([0-9A-F]+)#([0-9A-F]*)/;
 const CONTROL = '1F4C4D02';
 const MALFUNCTION = 1825, CLEAR = 1826; // docs/bus.md

@@ -16,7 +16,7 @@ const VALUES = ['pictures', 'flags', 'mode', 'fov', 'rangeNm', 'cursorLatitude',
     'isCursorPlaced', 'framesLost', 'actsLost', 'linesDropped', 'isRadarPage', 'isMapUsable', 'refused',
     'widthPx', 'heightPx', 'steps', 'stepsRead', 'departures', 'checks', 'checksFailed', 'readsDiffer', 'hasEnded',
     'isOtherBuild', 'ceased'];
-const MODES = ['GM', 'GMT', 'SEA', 'BCN', 'SAR'], FOVS = ['NORM', 'EXP', 'DBS1', 'DBS2'];
+export const MODES = ['GM', 'GMT', 'SEA', 'BCN', 'SAR'], FOVS = ['NORM', 'EXP', 'DBS1', 'DBS2'];
 const DEGREES_OF_BAM = 360 / 2 ** 32;
 
 export class Unit {
