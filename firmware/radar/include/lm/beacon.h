@@ -31,8 +31,7 @@ struct lm_beacon_sample {
 /* Set the bins of the replies that come back to their powers; 1.0 in Q24 is a whole reply. The
  * others keep theirs, 0. line->lit was traced; its levels are lost. Cost: some 4,000 instructions,
  * and that of lm_target_line_replies. */
-void lm_beacon_sample(const struct lm_beacon_sample *sample, struct lm_line *line,
-                      uint32_t *power_q24);
+void lm_beacon_sample(const struct lm_beacon_sample *b, struct lm_line *line, uint32_t *power_q24);
 
 /* Levels of a display line from the powers behind the beam: `bright_db_q8` where a beacon within
  * the beam answers, LM_LEVEL_SHADOW elsewhere. */

@@ -4,9 +4,9 @@
 #define HS_NETWORK_OPTIONS_H
 
 /* A CAN interface, or the name of one in a log: 1 to 15 characters without blanks. */
-const char *hs_take_interface(void *name, const char *text);
+const char *hs_take_interface(void *context, const char *text);
 
 /* An IPv4 address in dots. */
-const char *hs_take_address(void *address, const char *text);
+const char *hs_take_address(void *context, const char *text);
 
 #endif
