@@ -4,7 +4,6 @@
 #include "trust/serial.h"
 #include "trust/verify.h"
 
-#include <errno.h>
 #include <inttypes.h>
 #include <signal.h>
 #include <string.h>
@@ -15,15 +14,6 @@ static uint64_t monotonic_ms(void)
     struct timespec t;
     clock_gettime(CLOCK_MONOTONIC, &t);
     return (uint64_t)t.tv_sec * 1000u + (uint64_t)t.tv_nsec / 1000000u;
-}
-
-static int read_flash(void *ctx, uint64_t offset, void *to, uint32_t bytes)
-{
-    const struct lm_flash *flash = ctx;
-    if (flash->read_start(flash->ctx, offset, to, bytes) != LM_OK) {
-        return EIO;
-    }
-    return flash->read_poll(flash->ctx) == LM_OK ? 0 : EIO;
 }
 
 /* Signals are blocked and wait for the loop; but it has not begun yet. */
@@ -112,9 +102,10 @@ static struct database judge_unknown(const struct config *c, const struct trust_
 
 struct database database_judge(const struct config *c, const struct lm_flash *flash, bool is_check)
 {
-    const struct trust_reader reader = {(void *)(uintptr_t)flash, flash->size_bytes, read_flash};
+    struct trust_reader reader;
     struct trust_keys keys = {0};
     struct trust_result r;
+    trust_reader_of_flash(&reader, flash);
     const bool has_keys =
         c->database_key[0] == '\0' || trust_keys_load(&keys, c->database_key) == 0;
     if (!has_keys && c->database_trust == 0) {

@@ -11,8 +11,4 @@ int slot_medium_mtd(struct slot_medium *m, const char *path, enum slot_use use, 
 /* A file, or a block device. */
 int slot_medium_file(struct slot_medium *m, const char *path, enum slot_use use, int *fd);
 
-/* Read or write all of it. 0 or an errno. */
-int slot_read_whole(int fd, void *to, uint32_t length, uint64_t from);
-int slot_write_whole(int fd, const void *from, uint32_t length, uint64_t to);
-
 #endif

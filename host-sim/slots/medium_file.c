@@ -1,4 +1,5 @@
 /* A slot in a file or on a block device. */
+#include "hs/whole_file.h"
 #include "media.h"
 
 #include <errno.h>
@@ -27,52 +28,16 @@ struct file_medium {
     bool is_device;
 };
 
-int slot_read_whole(int fd, void *to, uint32_t length, uint64_t from)
-{
-    uint8_t *bytes = to;
-    while (length > 0) {
-        const ssize_t got = pread(fd, bytes, length, (off_t)from);
-        if (got < 0 && errno == EINTR) {
-            continue;
-        }
-        if (got <= 0) {
-            return got < 0 ? errno : EIO;
-        }
-        bytes += got;
-        from += (uint64_t)got;
-        length -= (uint32_t)got;
-    }
-    return 0;
-}
-
-int slot_write_whole(int fd, const void *from, uint32_t length, uint64_t to)
-{
-    const uint8_t *bytes = from;
-    while (length > 0) {
-        const ssize_t put = pwrite(fd, bytes, length, (off_t)to);
-        if (put < 0 && errno == EINTR) {
-            continue;
-        }
-        if (put <= 0) {
-            return put < 0 ? errno : EIO;
-        }
-        bytes += put;
-        to += (uint64_t)put;
-        length -= (uint32_t)put;
-    }
-    return 0;
-}
-
 static int read_image(void *ctx, uint64_t offset, void *to, uint32_t length)
 {
     const struct file_medium *f = ctx;
-    return slot_read_whole(f->image_fd, to, length, offset);
+    return hs_read_whole(f->image_fd, to, length, offset);
 }
 
 static int write_image(void *ctx, uint64_t offset, const void *from, uint32_t length)
 {
     const struct file_medium *f = ctx;
-    return slot_write_whole(f->image_fd, from, length, offset);
+    return hs_write_whole(f->image_fd, from, length, offset);
 }
 
 static int read_record(void *ctx, uint32_t copy, struct lm_slot_record *record)
@@ -92,8 +57,8 @@ static int write_record(void *ctx, uint32_t copy, const struct lm_slot_record *r
     const struct file_medium *f = ctx;
     uint8_t block[RECORD_BYTES] = {0};
     memcpy(block, record, sizeof *record);
-    return slot_write_whole(f->records_fd, block, sizeof block,
-                            f->records_at + (uint64_t)copy * RECORD_STEP);
+    return hs_write_whole(f->records_fd, block, sizeof block,
+                          f->records_at + (uint64_t)copy * RECORD_STEP);
 }
 
 /* Room is taken before the first byte is written: a full disk is known then. */

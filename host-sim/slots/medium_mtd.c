@@ -1,6 +1,7 @@
 /* A slot on an MTD device. A block is erased and written as a whole. One that fails to is marked
  * bad, and the image goes on in the next good one. */
 #include "drv/flash_mtd.h"
+#include "hs/whole_file.h"
 #include "media.h"
 
 #include <errno.h>
@@ -50,7 +51,7 @@ static int write_block(struct mtd_medium *f, uint32_t index, const void *from, u
     memset(f->block, 0xff, bytes);
     memcpy(f->block, from, length);
     if (ioctl(f->fd, MEMERASE, &erase) != 0 ||
-        slot_write_whole(f->fd, f->block, used, (uint64_t)physical * bytes) != 0) {
+        hs_write_whole(f->fd, f->block, used, (uint64_t)physical * bytes) != 0) {
         return give_up_block(f, physical);
     }
     return 0;

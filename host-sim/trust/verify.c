@@ -2,11 +2,11 @@
 
 #include "crypto.h"
 #include "head.h"
+#include "hs/whole_file.h"
 #include "hs/zero_bytes.h"
 
 #include <errno.h>
 #include <string.h>
-#include <unistd.h>
 
 enum { CHUNK_BYTES = 64 << 10 };
 
@@ -21,26 +21,26 @@ struct walk {
 
 static int read_file(void *ctx, uint64_t offset, void *to, uint32_t bytes)
 {
-    const int descriptor = (int)(intptr_t)ctx;
-    uint8_t *at = to;
-    while (bytes > 0) {
-        const ssize_t got = pread(descriptor, at, bytes, (off_t)offset);
-        if (got < 0 && errno == EINTR) {
-            continue;
-        }
-        if (got <= 0) {
-            return got < 0 ? errno : EIO; /* it has become shorter */
-        }
-        at += got;
-        offset += (uint64_t)got;
-        bytes -= (uint32_t)got;
-    }
-    return 0;
+    return hs_read_whole((int)(intptr_t)ctx, to, bytes, offset);
 }
 
 void trust_reader_of_file(struct trust_reader *reader, int descriptor, uint64_t size_bytes)
 {
     *reader = (struct trust_reader){(void *)(intptr_t)descriptor, size_bytes, read_file};
+}
+
+static int read_flash(void *ctx, uint64_t offset, void *to, uint32_t bytes)
+{
+    const struct lm_flash *flash = ctx;
+    return flash->read_start(flash->ctx, offset, to, bytes) == LM_OK &&
+                   flash->read_poll(flash->ctx) == LM_OK
+               ? 0
+               : EIO;
+}
+
+void trust_reader_of_flash(struct trust_reader *reader, const struct lm_flash *flash)
+{
+    *reader = (struct trust_reader){(void *)(uintptr_t)flash, flash->size_bytes, read_flash};
 }
 
 /* Read the bytes of a section or of a gap, piece by piece. `sha` NULL: they must be zero. */

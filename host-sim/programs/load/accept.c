@@ -6,19 +6,9 @@
 #include "trust/serial.h"
 #include "trust/verify.h"
 
-#include <errno.h>
 #include <inttypes.h>
 #include <stdio.h>
 #include <string.h>
-
-static int read_flash(void *ctx, uint64_t offset, void *to, uint32_t bytes)
-{
-    const struct lm_flash *flash = ctx;
-    return flash->read_start(flash->ctx, offset, to, bytes) == LM_OK &&
-                   flash->read_poll(flash->ctx) == LM_OK
-               ? 0
-               : EIO;
-}
 
 /* A step back in serial numbers is refused here, as the panel would refuse it. */
 static int accept_serial(const struct slot_places *c, const char *path, uint64_t serial)
@@ -52,7 +42,8 @@ static int accept_good(const struct slot_places *c, const char *path, const stru
 int load_accept(const struct slot_places *c, const char *path, const struct lm_flash *flash,
                 enum load_length length)
 {
-    const struct trust_reader reader = {(void *)(uintptr_t)flash, flash->size_bytes, read_flash};
+    struct trust_reader reader;
+    trust_reader_of_flash(&reader, flash);
     struct trust_keys keys = {0};
     struct trust_result r;
     if (c->key[0] != '\0' && trust_keys_load(&keys, c->key) != 0 && !c->is_any) {

@@ -16,6 +16,8 @@
 #include <stdbool.h>
 #include <stdint.h>
 
+#include "lm/port.h"
+
 /* Where the image is. */
 struct trust_reader {
     void *ctx;
@@ -26,6 +28,9 @@ struct trust_reader {
 
 /* A file or block device; the descriptor stays the caller's, and its position is not used. */
 void trust_reader_of_file(struct trust_reader *reader, int descriptor, uint64_t size_bytes);
+
+/* A flash, borrowed, that answers each read within its first poll. */
+void trust_reader_of_flash(struct trust_reader *reader, const struct lm_flash *flash);
 
 enum trust_verdict {
     TRUST_GOOD,       /* signed by one of the keys, and all that was read is what was signed */
