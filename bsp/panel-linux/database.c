@@ -1,5 +1,6 @@
 #include "database.h"
 
+#include "hs/real_time.h"
 #include "report.h"
 #include "trust/serial.h"
 #include "trust/verify.h"
@@ -11,9 +12,7 @@
 
 static uint64_t monotonic_ms(void)
 {
-    struct timespec t;
-    clock_gettime(CLOCK_MONOTONIC, &t);
-    return (uint64_t)t.tv_sec * 1000u + (uint64_t)t.tv_nsec / 1000000u;
+    return (uint64_t)hs_clock_us(CLOCK_MONOTONIC) / 1000u;
 }
 
 /* Signals are blocked and wait for the loop; but it has not begun yet. */

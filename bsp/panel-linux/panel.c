@@ -1,6 +1,7 @@
 #include "panel.h"
 
 #include "drv/not_fitted.h"
+#include "hs/real_time.h"
 #include "lm/bus_filters.h"
 #include "lm/radar_record.h"
 #include "lm/sensor.h"
@@ -20,9 +21,7 @@ enum { START_PATIENCE_US = 50000, START_POLLS = 100 };
 
 static uint64_t monotonic_us(void)
 {
-    struct timespec t;
-    clock_gettime(CLOCK_MONOTONIC, &t);
-    return (uint64_t)t.tv_sec * 1000000u + (uint64_t)t.tv_nsec / 1000u;
+    return (uint64_t)hs_clock_us(CLOCK_MONOTONIC);
 }
 
 uint64_t panel_now_us(const struct panel *p)

@@ -1,5 +1,6 @@
 #include "recording_files.h"
 
+#include "hs/real_time.h"
 #include "report.h"
 
 #include <dirent.h>
@@ -20,9 +21,7 @@ static const char link_name[] = "current.log";
 
 static uint64_t now_us(void)
 {
-    struct timespec t;
-    clock_gettime(CLOCK_MONOTONIC, &t);
-    return (uint64_t)t.tv_sec * 1000000u + (uint64_t)t.tv_nsec / 1000u;
+    return (uint64_t)hs_clock_us(CLOCK_MONOTONIC);
 }
 
 static void name_part(char name[NAME_BYTES], uint32_t session, uint32_t part)

@@ -1,6 +1,7 @@
 #include "settings_file.h"
 
 #include "fx/crc32c.h"
+#include "hs/durable_file.h"
 #include "report.h"
 
 #include <errno.h>
@@ -48,30 +49,11 @@ const struct lm_settings *settings_file_read(struct settings_file *f, const char
     return &f->settings;
 }
 
-/* 0 or errno. */
-static int write_new(const char *path, const uint8_t *bytes)
-{
-    const int fd = open(path, O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0640);
-    if (fd < 0) {
-        return errno;
-    }
-    const bool is_whole = write(fd, bytes, SETTINGS_FILE_BYTES) == SETTINGS_FILE_BYTES;
-    const int cause = is_whole && fdatasync(fd) == 0 ? 0 : errno != 0 ? errno : EIO;
-    close(fd);
-    return cause;
-}
-
 static void write_file(struct settings_file *f, const struct lm_settings *s)
 {
-    char new_path[160];
     uint8_t bytes[SETTINGS_FILE_BYTES];
-    snprintf(new_path, sizeof new_path, "%s.new", f->path);
     seal(s, bytes);
-    errno = 0;
-    int cause = write_new(new_path, bytes);
-    if (cause == 0 && rename(new_path, f->path) != 0) {
-        cause = errno;
-    }
+    const int cause = hs_replace_file(f->path, bytes, sizeof bytes, 0640);
     if (cause != 0) {
         report(REPORT_ERROR, "settings: %s: %s; a restart will have those of before", f->path,
                strerror(cause));

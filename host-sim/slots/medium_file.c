@@ -1,4 +1,5 @@
 /* A slot in a file or on a block device. */
+#include "hs/durable_file.h"
 #include "hs/whole_file.h"
 #include "media.h"
 
@@ -103,20 +104,6 @@ static void close_all(void *ctx)
     free(f);
 }
 
-/* The name of a new file is on the medium when its folder is. */
-static int sync_folder(const char *path)
-{
-    char copy[PATH_MAX];
-    snprintf(copy, sizeof copy, "%s", path);
-    const int fd = open(dirname(copy), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
-    if (fd < 0) {
-        return errno;
-    }
-    const int cause = fsync(fd) == 0 || errno == EINVAL ? 0 : errno;
-    close(fd);
-    return cause;
-}
-
 /* A file that root makes belongs to the owner of its folder, the panel's user. */
 static void give_to_owner(int fd, const char *path)
 {
@@ -170,7 +157,8 @@ static int find_records(struct file_medium *f, const char *path, enum slot_use u
         return ENAMETOOLONG;
     }
     const int cause = open_one(name, use, &f->records_fd);
-    return cause == 0 && use == SLOT_TO_WRITE ? sync_folder(path) : cause;
+    /* The name of a new file is on the medium when its folder is. */
+    return cause == 0 && use == SLOT_TO_WRITE ? hs_sync_folder(path) : cause;
 }
 
 int slot_medium_file(struct slot_medium *m, const char *path, enum slot_use use, int *fd)
