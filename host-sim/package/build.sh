@@ -46,6 +46,7 @@ gzip -9nc "$top/CHANGELOG.md" >"$doc/CHANGELOG.md.gz"
     printf ' -- landmass maintainers <maintainers@landmass.example>  %s\n' "$(date -u -R -d "@$SOURCE_DATE_EPOCH")"
 } | gzip -9n >"$doc/changelog.gz"
 install -m 644 "$top/bsp/panel-linux/debian/copyright" "$doc/copyright"
+python3 -B "$here/sbom.py" make "$root" landmass-tools "$version" "$arch"
 
 # The libraries that the programs need, as packages with the versions that their symbols ask for.
 printf 'Source: landmass\n\nPackage: landmass-tools\nArchitecture: any\n' >"$root/debian/control"

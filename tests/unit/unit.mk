@@ -117,6 +117,7 @@ $(UNIT)/$(basename $(1)): tests/unit/$(1)
 endef
 $(eval $(call unit_script,bsp/panel-linux/test_package.sh))
 $(eval $(call unit_script,host-sim/package/test_package.sh))
+$(eval $(call unit_script,host-sim/package/test_sbom.py))
 $(eval $(call unit_script,host-sim/programs/bus/test_forms.py))
 $(eval $(call unit_script,host-sim/programs/dis/test_dis.py))
 $(eval $(call unit_script,host-sim/programs/json/test_json.py))
@@ -126,6 +127,7 @@ $(eval $(call unit_script,host-sim/programs/nav/test_nav_live.py))
 $(eval $(call unit_script,host-sim/programs/progress/test_progress.py))
 $(UNIT)/bsp/panel-linux/test_package: $(PANEL) $(O)/bin/landmass-load $(wildcard bsp/panel-linux/debian/*)
 $(UNIT)/host-sim/package/test_package: $(PROGRAMS) $(O)/ios/.made $(wildcard host-sim/package/*)
+$(UNIT)/host-sim/package/test_sbom: $(PANEL) $(O)/bin/landmass-load $(wildcard host-sim/package/*)
 $(UNIT)/host-sim/programs/dis/test_dis: | $(O)/bin/landmass-dis
 $(UNIT)/host-sim/programs/nav/test_nav_live: | $(O)/bin/landmass-nav
 $(UNIT)/host-sim/slots/test_kills: | $(addprefix $(O)/bin/landmass-,load db scene)

@@ -52,6 +52,7 @@ gzip -9nc "$here/../../../CHANGELOG.md" >"$doc/CHANGELOG.md.gz"
     printf ' -- landmass maintainers <maintainers@landmass.example>  %s\n' "$(date -u -R -d "@$SOURCE_DATE_EPOCH")"
 } | gzip -9n >"$doc/changelog.gz"
 install -m 644 "$here/copyright" "$doc/copyright"
+python3 -B "$here/../../../host-sim/package/sbom.py" make "$root" landmass-panel "$version" "$arch"
 
 # The dependencies follow from the names of the libraries that the program needs.
 depends='adduser, libc6 (>= 2.34)'
