@@ -109,17 +109,37 @@ double reflect_raysar_diffuse(const struct reflect_material *m, double theta2)
     return m->diffuse * pow(fmax(cos(theta2), 0), m->brilliance);
 }
 
-static double power_reflectivity(const struct reflect_material *m, bool is_vv, double theta1)
+static double complex fresnel(const struct reflect_material *m, bool is_vv, double theta1)
 {
     const double complex permittivity = m->permittivity - m->loss * I;
-    return square(cabs(is_vv ? reflect_fresnel_vv(permittivity, theta1)
-                             : reflect_fresnel_hh(permittivity, theta1)));
+    return is_vv ? reflect_fresnel_vv(permittivity, theta1)
+                 : reflect_fresnel_hh(permittivity, theta1);
+}
+
+static double power_reflectivity(const struct reflect_material *m, bool is_vv, double theta1)
+{
+    return square(cabs(fresnel(m, is_vv, theta1)));
 }
 
 /* Share of the specular power that roughness leaves: exp(-(2 k s cos t)^2). */
 static double smooth_share(const struct reflect_material *m, double wavelength_m, double theta1)
 {
     return exp(-square(4 * pi / wavelength_m * m->rms_height_m * cos(theta1)));
+}
+
+/* What small perturbation sends back, in shares of a white matt surface. */
+static double rough_share(const struct reflect_law *law, const struct reflect_material *m,
+                          const struct trace_record *t)
+{
+    const double t1 = (double)t->incidence_rad;
+    return reflect_spm_sigma0(m, law->wavelength_m, reflect_is_vv(law), t1, (double)t->echo_rad,
+                              (double)t->turn_rad) /
+           (4 * fmax(cos(t1), 1e-6));
+}
+
+bool reflect_is_vv(const struct reflect_law *law)
+{
+    return law->kind == REFLECT_FRESNEL_VV || law->kind == REFLECT_SPM_VV;
 }
 
 static struct reflect_shares shares(double specular, double back)
@@ -131,7 +151,7 @@ struct reflect_shares reflect_record(const struct reflect_law *law, const struct
 {
     const struct reflect_material *m = &law->materials[t->material];
     const double t1 = (double)t->incidence_rad, t2 = (double)t->echo_rad, t4 = (double)t->turn_rad;
-    const bool is_vv = law->kind == REFLECT_FRESNEL_VV || law->kind == REFLECT_SPM_VV;
+    const bool is_vv = reflect_is_vv(law);
     if (law->kind == REFLECT_RAYSAR) {
         return shares(m->specular,
                       reflect_raysar_specular(m, t1, t2, t4) + reflect_raysar_diffuse(m, t2));
@@ -141,7 +161,21 @@ struct reflect_shares reflect_record(const struct reflect_law *law, const struct
         return shares(specular, specular * lobe(m, t1, t2, t4) + reflect_raysar_diffuse(m, t2));
     }
     specular *= smooth_share(m, law->wavelength_m, t1);
-    const double rough =
-        reflect_spm_sigma0(m, law->wavelength_m, is_vv, t1, t2, t4) / (4 * fmax(cos(t1), 1e-6));
-    return shares(specular, specular * lobe(m, t1, t2, t4) + rough);
+    return shares(specular, specular * lobe(m, t1, t2, t4) + rough_share(law, m, t));
+}
+
+struct reflect_field reflect_field_of(const struct reflect_law *law, const struct trace_record *t)
+{
+    const struct reflect_material *m = &law->materials[t->material];
+    const double t1 = (double)t->incidence_rad, t2 = (double)t->echo_rad;
+    const double diffuse = reflect_raysar_diffuse(m, t2);
+    if (law->kind == REFLECT_RAYSAR) {
+        return (struct reflect_field){-sqrt(m->specular), diffuse};
+    }
+    const double complex coefficient = fresnel(m, reflect_is_vv(law), t1);
+    if (law->kind == REFLECT_FRESNEL_HH || law->kind == REFLECT_FRESNEL_VV) {
+        return (struct reflect_field){coefficient, diffuse};
+    }
+    return (struct reflect_field){coefficient * sqrt(smooth_share(m, law->wavelength_m, t1)),
+                                  fmin(rough_share(law, m, t), 1)};
 }

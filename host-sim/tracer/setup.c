@@ -241,22 +241,28 @@ static int make_chip(const struct setup *s, const struct trace_grid *grid, float
     return 0;
 }
 
+static int check_ratio(const struct setup *s, const struct trace_grid *grid)
+{
+    const uint32_t ratio = (uint32_t)s->ratio;
+    return grid->cells_across % ratio == 0 && grid->cells_range % ratio == 0
+               ? 0
+               : hs_error("--pixel", "give a number that divides the cells",
+                          "%u x %u cells make no whole number of pixels", grid->cells_across,
+                          grid->cells_range);
+}
+
+static void find_size(const struct setup *s, const struct trace_grid *grid, int *width, int *height)
+{
+    *width = (int)(grid->cells_across / (uint32_t)s->ratio);
+    *height = (int)(grid->cells_range / (uint32_t)s->ratio);
+}
+
 float *setup_chip(const struct setup *s, const struct trace_records *r, int *width, int *height)
 {
     struct reflect_law law;
     const struct trace_grid *grid = &r->grid;
-    if (pix_resolution_check(s->resolution_m, grid->cell_m) != 0) {
-        return NULL;
-    }
-    if (grid->cells_across % (uint32_t)s->ratio != 0 ||
-        grid->cells_range % (uint32_t)s->ratio != 0) {
-        hs_error("--pixel", "give a number that divides the cells",
-                 "%ld cells make no whole "
-                 "number of pixels",
-                 s->cells);
-        return NULL;
-    }
-    if (setup_law(s, r, &law) != 0) {
+    if (pix_resolution_check(s->resolution_m, grid->cell_m) != 0 || check_ratio(s, grid) != 0 ||
+        setup_law(s, r, &law) != 0) {
         return NULL;
     }
     float *power = malloc((size_t)grid->cells_across * grid->cells_range * sizeof *power);
@@ -268,7 +274,19 @@ float *setup_chip(const struct setup *s, const struct trace_records *r, int *wid
         free(power);
         return NULL;
     }
-    *width = (int)(grid->cells_across / (uint32_t)s->ratio);
-    *height = (int)(grid->cells_range / (uint32_t)s->ratio);
+    find_size(s, grid, width, height);
     return power;
+}
+
+float complex *setup_complex_chip(const struct setup *s, const struct trace_records *r,
+                                  enum focus_weighting weighting, int *width, int *height)
+{
+    struct reflect_law law;
+    const struct focus_order order = {weighting, s->resolution_m, (uint32_t)s->ratio,
+                                      (uint64_t)s->seed};
+    if (check_ratio(s, &r->grid) != 0 || setup_law(s, r, &law) != 0) {
+        return NULL;
+    }
+    find_size(s, &r->grid, width, height);
+    return focus_chip(r, &law, &order);
 }

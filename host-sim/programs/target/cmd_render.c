@@ -1,5 +1,6 @@
 #include "chip_picture.h"
 #include "commands.h"
+#include "complex_file.h"
 
 #include "hs/atomic_file.h"
 #include "hs/error.h"
@@ -15,11 +16,16 @@ static const struct hs_usage usage = {
     "Give --model, or --records of `landmass-target trace`, and --out or --csv, or both.\n"
     "In the PNG the radar looks from below upwards: near range is the lowest row, and what\n"
     "the radar has to its right is on the right. The CSV has amplitudes, square roots of\n"
-    "power, in the same order."};
+    "power, in the same order.\n"
+    "With --coherent fields are added with their phase, each with the side lobes of the\n"
+    "radar: a pixel is the root of a cross section in m^2. Speckle is then the sum over\n"
+    "rough places, one for each ray. --complex writes it, in the order of the PNG."};
 
 struct outputs {
-    const char *png, *csv;
+    const char *png, *csv, *complex_file;
     int zoom;
+    bool is_coherent;
+    int weighting; /* enum focus_weighting */
 };
 
 static int write_csv(const char *path, const float *power, int width, int height)
@@ -53,15 +59,47 @@ static int write_png(const struct setup *s, const struct outputs *o, const float
     return result;
 }
 
+/* Power of a complex chip, which is written when that is asked for. */
+static float *coherent_power(const struct setup *s, const struct trace_records *r,
+                             const struct outputs *o, int *width, int *height)
+{
+    const enum focus_weighting weighting = (enum focus_weighting)o->weighting;
+    float complex *chip = setup_complex_chip(s, r, weighting, width, height);
+    if (!chip) {
+        return NULL;
+    }
+    const int pixels = *width * *height;
+    float *power = calloc((size_t)pixels, sizeof *power);
+    if (!power) {
+        hs_error("picture", "give fewer --cells", "out of memory");
+    }
+    for (int i = 0; power && i < pixels; i++) {
+        power[i] = crealf(chip[i]) * crealf(chip[i]) + cimagf(chip[i]) * cimagf(chip[i]);
+    }
+    if (power && o->complex_file &&
+        complex_file_write(s, r, weighting, o->complex_file, chip) != 0) {
+        free(power);
+        power = NULL;
+    }
+    free(chip);
+    return power;
+}
+
 static int render(const struct setup *s, const struct trace_records *r, const struct outputs *o)
 {
     int width, height;
-    float *power = setup_chip(s, r, &width, &height);
+    float *power = o->is_coherent ? coherent_power(s, r, o, &width, &height)
+                                  : setup_chip(s, r, &width, &height);
     if (!power) {
         return -1;
     }
     hs_report_integer("width_px", width);
     hs_report_integer("height_px", height);
+    if (o->is_coherent) {
+        const double peak_dbsm = 10 * log10((double)chip_peak(power, width * height));
+        printf("brightest pixel: %.2f dBsm\n", peak_dbsm);
+        hs_report_real("peak_dbsm", peak_dbsm);
+    }
     int result = o->csv ? write_csv(o->csv, power, width, height) : 0;
     if (result == 0 && o->png) {
         result = write_png(s, o, power, width, height);
@@ -94,20 +132,40 @@ static int run(const struct setup *s, const char *records, const struct outputs 
     return result == 0 ? HS_EXIT_OK : HS_EXIT_FAILED;
 }
 
+static int check_outputs(const struct setup *s, const char *records, const struct outputs *o)
+{
+    if (!records == !s->model || (!o->png && !o->csv && !o->complex_file)) {
+        hs_error("render", "see landmass-target render --help",
+                 "needs one of --model and --records, and --out, --csv or --complex");
+        return -1;
+    }
+    return 0;
+}
+
 int target_cmd_render(int argc, char **argv)
 {
     struct setup s = setup_default();
-    const char *records = NULL, *png = NULL, *csv = NULL;
+    struct outputs o = {.zoom = 6, .weighting = FOCUS_TAYLOR};
+    const char *records = NULL;
     long zoom = 6;
-    enum { OWN = 17, COUNT = OWN + SETUP_OPTIONS };
+    enum { OWN = 24, COUNT = OWN + SETUP_OPTIONS };
     struct hs_option options[COUNT] = {
         {"records", HS_INPUT, &records, 0, 0, "FILE.trace", "in place of a model", false},
-        {"out", HS_OUTPUT, &png, 0, 0, "FILE.png", "the picture", false},
-        {"csv", HS_OUTPUT, &csv, 0, 0, "FILE.csv", "the amplitudes", false},
+        {"out", HS_OUTPUT, &o.png, 0, 0, "FILE.png", "the picture", false},
+        {"csv", HS_OUTPUT, &o.csv, 0, 0, "FILE.csv", "the amplitudes", false},
+        {"complex", HS_OUTPUT, &o.complex_file, 0, 0, "FILE.tif|FILE.ntf",
+         "the fields, as GeoTIFF or NITF", false},
+        {"coherent", HS_FLAG, &o.is_coherent, 0, 0, NULL, "add fields instead of power", false},
+        {"weighting", HS_CHOICE, &o.weighting, 0, 0, FOCUS_WEIGHTING_WORDS,
+         "of the radar's band, with --coherent", false},
         {"zoom", HS_INTEGER, &zoom, 1, 64, "N", "dots of the PNG a pixel, either way", false},
         {"azimuth", HS_REAL, &s.azimuth_deg, -360, 360, "DEG",
          "of the radar, from the model's nose towards its right", false},
+        HS_NEEDS_ROW("complex", "coherent"),
+        HS_NEEDS_ROW("weighting", "coherent"),
+        HS_CLASHES_ROW("coherent", "looks"),
         HS_NEEDS_ROW("zoom", "out"),
+        HS_NEEDS_ROW("range-db", "out"),
         HS_NEEDS_ROW("azimuth", "model"),
         HS_NEEDS_ROW("up", "model"),
         HS_NEEDS_ROW("scale", "model"),
@@ -126,11 +184,9 @@ int target_cmd_render(int argc, char **argv)
     if (!hs_options_read(&usage, options, COUNT, argc, argv, &exit_code)) {
         return exit_code;
     }
-    if (!records == !s.model || (!png && !csv)) {
-        hs_error("render", "see landmass-target render --help",
-                 "needs one of --model and --records, and --out or --csv");
+    if (check_outputs(&s, records, &o) != 0) {
         return HS_EXIT_USAGE;
     }
-    const struct outputs outputs = {png, csv, (int)zoom};
-    return run(&s, records, &outputs);
+    o.zoom = (int)zoom;
+    return run(&s, records, &o);
 }

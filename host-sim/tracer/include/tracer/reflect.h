@@ -95,4 +95,17 @@ struct reflect_shares {
 /* The shares of one record by the law, each 0..1. */
 struct reflect_shares reflect_record(const struct reflect_law *law, const struct trace_record *t);
 
+/* The same with phase: the field that a smooth facet reflects, and the share of intensity that its
+ * roughness sends back to the radar without any. A lobe is not in it: what a facet sends beside the
+ * specular direction comes from the sum over its rays. */
+struct reflect_field {
+    double complex
+        specular;     /* Fresnel's coefficient, less what roughness takes; RaySAR: -sqrt F_s */
+    double scattered; /* 0..1: F_d (N.L)^F_b, or small perturbation */
+};
+struct reflect_field reflect_field_of(const struct reflect_law *law, const struct trace_record *t);
+
+/* Does the law have the electric vector in the plane of incidence? */
+bool reflect_is_vv(const struct reflect_law *law);
+
 #endif

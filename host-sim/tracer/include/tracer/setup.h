@@ -4,6 +4,7 @@
 #define TRACER_SETUP_H
 
 #include "hs/options.h"
+#include "tracer/focus.h"
 #include "tracer/pix.h"
 #include "tracer/reflect.h"
 #include "tracer/trace.h"
@@ -58,5 +59,9 @@ int setup_law(const struct setup *s, const struct trace_records *r, struct refle
 /* The chip of traced records: power per pixel, near row first; *width and *height pixels. The
  * caller frees it. NULL with the error reported. */
 float *setup_chip(const struct setup *s, const struct trace_records *r, int *width, int *height);
+
+/* The same as complex numbers (tracer/focus.h): fields with their phase, under that weighting. */
+float complex *setup_complex_chip(const struct setup *s, const struct trace_records *r,
+                                  enum focus_weighting weighting, int *width, int *height);
 
 #endif

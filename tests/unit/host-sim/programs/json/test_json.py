@@ -600,6 +600,8 @@ def target_render():
     with open(here("tank.csv")) as file:
         lines = file.read().splitlines()
     assert (document["report"]["height_px"], document["report"]["width_px"]) == (len(lines), len(lines[0].split(",")))
+    document, text = run("target", "render", "--records", here("tank.trace"), "--coherent", "--complex", here("tank.tif"))
+    assert near(document["report"]["peak_dbsm"], find(r"^brightest pixel: (\S+) dBsm", text)[0], 0.01)
 
 
 def target_sheet():

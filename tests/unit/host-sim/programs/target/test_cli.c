@@ -43,6 +43,9 @@ TEST(a_command_line_without_sense_ends_with_2)
     assert_int_equal(run("render --model tank --law ohm --out y.png"), 2);
     assert_int_equal(run("bake --model tank --law ohm --out y.sig"), 2);
     assert_int_equal(run("render --records x.trace --azimuth 9 --out y.png"), 2);
+    assert_int_equal(run("render --model slicy --complex y.tif"), 2);
+    assert_int_equal(run("render --model slicy --weighting taylor --csv y.csv"), 2);
+    assert_int_equal(run("render --model slicy --coherent --looks 2 --csv y.csv"), 2);
 }
 
 /* A closed body of 7 m, moved and scaled: whatever the picture would not show is said. */
@@ -102,6 +105,33 @@ TEST(a_resolution_that_the_cells_cannot_have_is_refused)
     assert_int_equal(shell("grep -q 'cells of 0.1 m take 0.1184 to 12.67 m, not 0.11 m' errors"),
                      0);
     assert_int_equal(run("render --model slicy --resolution 0.12 --csv fine.csv"), 0);
+}
+
+/* GDAL's own tools read the fields: their values are those of the CSV, row by row. */
+TEST(complex_chips_are_read_by_other_programs)
+{
+    assert_int_equal(run("render --model slicy --azimuth 20 --coherent --law fresnel-vv "
+                         "--complex chip.tif --csv chip.csv"),
+                     0);
+    assert_int_equal(run("render --model slicy --azimuth 20 --coherent --law fresnel-vv "
+                         "--complex chip.ntf --csv again.csv"),
+                     0);
+    assert_int_equal(shell("cmp chip.csv again.csv && gdalinfo chip.tif >tif && gdalinfo chip.ntf "
+                           ">ntf && grep -q Type=CFloat32 tif && grep -q WEIGHTING=taylor tif && "
+                           "grep -q NITF_ICAT=SAR ntf && grep -q NITF_ISUBCAT=Q ntf && "
+                           "grep -q 'WAVELENGTH_M=0.03123' ntf"),
+                     0);
+    assert_int_equal(
+        shell("head -7 chip.csv | tail -1 | cut -d, -f31 >value && "
+              "for f in chip.tif chip.ntf; do gdallocationinfo -valonly $f 30 6 | tr -d 'i' | "
+              "sed -E 's/([0-9])[+]?([+-])/\\1 \\2/' | tr '\\n' ' ' | "
+              "awk -v v=$(cat value) '{ d = sqrt($1 * $1 + $2 * $2) - v; "
+              "exit !(d < 1e-4 * v && d > -1e-4 * v) }' || exit 1; done"),
+        0);
+    assert_int_equal(run("render --model slicy --coherent --complex chip.raw 2>errors"), 1);
+    assert_int_equal(shell("grep -q 'chip.raw: has no known form; call it' errors"), 0);
+    assert_int_equal(run("render --model slicy --coherent --pixel 4 --complex x.tif 2>errors"), 1);
+    assert_int_equal(shell("grep -q 'pixels of 0.4 m hold' errors && ! test -e x.tif"), 0);
 }
 
 TEST(bad_input_ends_with_1_and_leaves_no_file)

@@ -1,0 +1,24 @@
+/* Complex raster: a picture of complex numbers with notes about it, for other people's programs.
+ * The end of the name says the form:
+ * - .tif, .tiff: GeoTIFF, one band of CFloat32, the notes as metadata,
+ * - .ntf, .nitf: NITF 2.1, image category SAR, bands I and Q of 32-bit floats, the notes as image
+ *   comments. GDAL writes no SICD: that also wants an orbit and times, which no model has. */
+#ifndef GIS_COMPLEX_RASTER_H
+#define GIS_COMPLEX_RASTER_H
+
+#include <complex.h>
+
+enum { DB_COMPLEX_NOTES_MAX = 9 };
+
+/* "name=value", at most 80 characters in ASCII. */
+struct db_complex_note {
+    const char *name;
+    char value[64];
+};
+
+/* Write `pixels`, the first row on top, whole or not at all. Returns 0, or -1 with the error
+ * reported: another end of the name, or it cannot be written. */
+int db_complex_write(const char *path, const float complex *pixels, int width, int height,
+                     const struct db_complex_note *notes, int count);
+
+#endif

@@ -1,0 +1,320 @@
+/* Coherent sum and complex chips, against cross sections and responses of the textbooks. */
+#include "check.h"
+#include "shapes.h"
+#include "tracer/coherent.h"
+#include "tracer/focus.h"
+#include "tracer/trace.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+static const double pi = 3.14159265358979323846;
+static const double lambda = TRACE_WAVELENGTH_M;
+
+/* One material that reflects everything and scatters nothing. */
+static struct reflect_law metal_law(enum reflect_kind kind)
+{
+    struct reflect_law law = {.kind = kind, .wavelength_m = lambda};
+    for (int i = 0; i < TRACE_MATERIALS_MAX; i++) {
+        law.materials[i] = (struct reflect_material){
+            .name = "metal", .permittivity = 1, .loss = 1e12, .specular = 1, .roughness = 1};
+    }
+    return law;
+}
+
+/* Looks from ahead; without ground. The mesh is freed. */
+static struct trace_records traced(struct mesh *m, double depression_deg, double cell_m,
+                                   uint32_t rays)
+{
+    const struct trace_order o = {
+        {0, depression_deg, lambda}, {128, 128, cell_m}, rays, TRACE_BOUNCES_MAX, 2};
+    struct scene s;
+    struct trace_records r;
+    assert_int_equal(scene_open(&s, m, 0, "test"), 0);
+    assert_int_equal(trace_run(&s, &o, "test", &r, NULL), 0);
+    scene_close(&s);
+    mesh_free(m);
+    return r;
+}
+
+static double dbsm(double complex field)
+{
+    return 20 * log10(cabs(field));
+}
+
+static double total_dbsm(const struct trace_records *r, enum reflect_kind kind)
+{
+    const struct reflect_law law = metal_law(kind);
+    return dbsm(coherent_total(r, &law, 1));
+}
+
+static void assert_near(double found, double expected, double most)
+{
+    if (!(fabs(found - expected) <= most)) {
+        print_error("%g is not within %g of %g\n", found, most, expected);
+        fail();
+    }
+}
+
+/* Knott, Shaeffer, Tuley, Radar Cross Section, chapter 5: physical optics of a plate a x b, turned
+ * by t: 4 pi (a b cos t / l)^2 (sin x / x)^2, x = k a sin t. The root, over that at t = 0. */
+static double plate_lobe(double a, double turn)
+{
+    const double x = 2 * pi / lambda * a * sin(turn);
+    return cos(turn) * (x == 0 ? 1 : fabs(sin(x) / x));
+}
+
+TEST(a_plate_has_the_main_lobe_and_side_lobes_of_physical_optics)
+{
+    const double a = 0.4, b = 0.3, peak = sqrt(4 * pi) * a * b / lambda;
+    const struct trace_axes x = trace_axes_of(&(struct trace_look){0, 30, lambda});
+    const struct reflect_law law = metal_law(REFLECT_FRESNEL_HH);
+    for (double turn_deg = 0; turn_deg <= 14; turn_deg += 0.25) {
+        const double turn = turn_deg * pi / 180;
+        const struct vec u = vec_mad(vec_scale(x.across, a * cos(turn)), x.sight, a * sin(turn));
+        const struct vec v = vec_scale(x.rise, b);
+        struct mesh m = {0};
+        shape_plate(&m, vec_scale(vec_add(u, v), -0.5), u, v, mesh_material(&m, "metal"));
+        struct trace_records r = traced(&m, 30, 0.0078, 4);
+        /* The first side lobe is 0.217 of the peak. A ray too many at the edge is 0.005. */
+        assert_near(cabs(coherent_total(&r, &law, 1)) / peak, plate_lobe(a, turn), 0.008);
+        trace_records_free(&r);
+    }
+}
+
+/* Knott, Shaeffer, Tuley, table 6.1: of plates with sides of 0.5 m. */
+TEST(corners_have_the_cross_sections_of_the_textbook)
+{
+    const double boresight = atan(sqrt(0.5)) * 180 / pi, a = 0.5, all = pow(a, 4) / lambda / lambda;
+    const struct vec s = {a * sqrt(0.5), a * sqrt(0.5), 0}, p = {a * sqrt(0.5), -a * sqrt(0.5), 0};
+    const struct vec o = {0, 0, 0}, up = {0, 0, a};
+    struct mesh m = {0};
+    uint32_t metal = mesh_material(&m, "metal");
+    shape_plate(&m, (struct vec){0, -a / 2, 0}, (struct vec){0, a, 0}, up, metal);
+    shape_plate(&m, (struct vec){0, -a / 2, 0}, (struct vec){a, 0, 0}, (struct vec){0, a, 0},
+                metal);
+    struct trace_records r = traced(&m, 45, 0.01, 4);
+    assert_near(total_dbsm(&r, REFLECT_FRESNEL_HH), 10 * log10(8 * pi * all), 0.15);
+    trace_records_free(&r);
+
+    metal = mesh_material(&m, "metal");
+    shape_plate(&m, o, p, s, metal);
+    shape_plate(&m, o, up, s, metal);
+    shape_plate(&m, o, p, up, metal);
+    r = traced(&m, boresight, 0.01, 4);
+    assert_near(total_dbsm(&r, REFLECT_FRESNEL_VV), 10 * log10(12 * pi * all), 0.15);
+    trace_records_free(&r);
+
+    metal = mesh_material(&m, "metal");
+    shape_triangle(&m, o, p, s, metal);
+    shape_triangle(&m, o, s, up, metal);
+    shape_triangle(&m, o, up, p, metal);
+    r = traced(&m, boresight, 0.01, 4);
+    assert_near(total_dbsm(&r, REFLECT_RAYSAR), 10 * log10(4 * pi / 3 * all), 0.15);
+    trace_records_free(&r);
+}
+
+/* The same book: a cylinder of radius r and length l, seen from the side, k r l^2. Nothing is flat:
+ * the sum over many rays finds the zone that counts. */
+TEST(a_cylinder_has_the_cross_section_of_its_curvature)
+{
+    const double radius = 0.2, length = 0.4;
+    const struct trace_axes x = trace_axes_of(&(struct trace_look){0, 30, lambda});
+    struct mesh m = {0};
+    const struct shape_round round = {.from = vec_scale(x.rise, -length / 2),
+                                      .to = vec_scale(x.rise, length / 2),
+                                      .from_radius_m = radius,
+                                      .to_radius_m = radius,
+                                      .facets = SHAPE_CORNERS_MAX,
+                                      .has_caps = true};
+    shape_round(&m, &round, mesh_material(&m, "metal"));
+    struct trace_records r = traced(&m, 30, 0.0078, 8);
+    const double expected = 10 * log10(2 * pi / lambda * radius * length * length);
+    assert_near(total_dbsm(&r, REFLECT_FRESNEL_HH), expected, 0.7);
+    trace_records_free(&r);
+}
+
+static double turn_between(struct trace_records *r)
+{
+    const struct reflect_law hh = metal_law(REFLECT_FRESNEL_HH), vv = metal_law(REFLECT_FRESNEL_VV);
+    const double turn = carg(coherent_total(r, &hh, 1) / coherent_total(r, &vv, 1));
+    trace_records_free(r);
+    return fabs(turn);
+}
+
+/* What tells walls from roofs in polarimetry: HH and VV of a dihedral are opposite. */
+TEST(polarisations_agree_after_odd_reflections_and_oppose_after_even_ones)
+{
+    const struct trace_axes x = trace_axes_of(&(struct trace_look){0, 30, lambda});
+    struct mesh m = {0};
+    shape_plate(&m, vec_scale(vec_add(x.across, x.rise), -0.2), vec_scale(x.across, 0.4),
+                vec_scale(x.rise, 0.4), mesh_material(&m, "metal"));
+    struct trace_records r = traced(&m, 30, 0.01, 2);
+    assert_near(turn_between(&r), 0, 1e-3);
+    shape_plate(&m, (struct vec){0, -0.2, 0}, (struct vec){0, 0.4, 0}, (struct vec){0, 0, 0.3},
+                mesh_material(&m, "metal"));
+    shape_plate(&m, (struct vec){0, -0.2, 0}, (struct vec){0.6, 0, 0}, (struct vec){0, 0.4, 0}, 0);
+    r = traced(&m, 30, 0.01, 2);
+    assert_near(turn_between(&r), pi, 0.1); /* the wall alone has a side lobe, an odd one */
+}
+
+/* ---- the response ---- */
+
+enum { SIDE = 512, MIDDLE = SIDE / 2 };
+
+/* A mirror of one square metre and one ray, at that place. */
+static float complex *point_chip(double across_m, double range_m, const struct focus_order *o)
+{
+    struct trace_record t = {.across_m = (float)across_m,
+                             .range_m = (float)range_m,
+                             .normal = {0, (float)-sqrt(0.5), (float)sqrt(0.5)}};
+    t.phase_rad = (float)remainder(-4 * pi * (double)t.range_m / lambda, 2 * pi);
+    const struct trace_records r = {
+        .look = {0, 45, lambda},
+        .grid = {SIDE, SIDE, 0.05},
+        .sensor = {1, 1, 1, 1, -0.5, -0.5},
+        .material_count = 1,
+        .materials = {"metal"},
+        .bounce_count = 1,
+        .bounces = {{&t, 1}},
+    };
+    const struct reflect_law law = metal_law(REFLECT_FRESNEL_HH);
+    float complex *chip = focus_chip(&r, &law, o);
+    assert_non_null(chip);
+    return chip;
+}
+
+/* Highest value beyond the first minimum on a cut through the middle, over the peak. */
+static double side_lobe_db(const float complex *first, int step)
+{
+    int i = MIDDLE;
+    while (cabsf(first[(i + 1) * step]) < cabsf(first[i * step])) {
+        i++;
+    }
+    float most = 0;
+    for (; i < SIDE; i++) {
+        most = fmaxf(most, cabsf(first[i * step]));
+    }
+    return 20 * log10((double)(most / cabsf(first[MIDDLE * step])));
+}
+
+static double width_m(const float complex *first, int step)
+{
+    const float half = cabsf(first[MIDDLE * step]) * (float)sqrt(0.5);
+    int i = MIDDLE;
+    while (cabsf(first[(i + 1) * step]) > half) {
+        i++;
+    }
+    const float here = cabsf(first[i * step]), next = cabsf(first[(i + 1) * step]);
+    return 2 * 0.05 * (i - MIDDLE + (double)((here - half) / (here - next)));
+}
+
+/* The sinc's -13.26 dB; Hamming's -43 dB in F. J. Harris, "On the use of windows", Proc. IEEE 66,
+ * 1978, table 1, and -42.7 as computed from its formula; Taylor's design of -35 dB, which with nbar
+ * 4 is -35.2 dB. */
+TEST(a_point_has_the_side_lobes_of_its_weighting)
+{
+    static const double expected_db[FOCUS_WEIGHTINGS] = {-13.26, -42.7, -35.2};
+    for (int w = 0; w < FOCUS_WEIGHTINGS; w++) {
+        const struct focus_order o = {(enum focus_weighting)w, 0.6, 1, 1};
+        float complex *chip = point_chip(0.025, 0.025, &o); /* a pixel's middle */
+        const float complex *row = chip + MIDDLE * SIDE, *column = chip + MIDDLE;
+        const double peak = 4 * pi / lambda / lambda;
+        assert_near(pow(cabs(row[MIDDLE]), 2) / peak, 1, 2e-4);
+        assert_near(side_lobe_db(row, 1), expected_db[w], 0.3);
+        assert_near(side_lobe_db(column, SIDE), expected_db[w], 0.3);
+        assert_near(width_m(row, 1), 0.6, 0.012);
+        assert_near(width_m(column, SIDE), 0.6, 0.012);
+        free(chip);
+    }
+}
+
+/* Wherever it lies between the pixels: the response of 49 equal frequencies in 33.6 m (512 cells,
+ * and a quarter of them to spare), a sinc that repeats itself there, phase and all. */
+static double sinc_of_49(double metres)
+{
+    const double x = pi * metres / 33.6;
+    return sin(49 * x) / (49 * sin(x));
+}
+
+TEST(a_point_between_pixels_is_the_sinc_at_its_place)
+{
+    for (double shift = 0.003; shift < 0.05; shift += 0.009) {
+        const struct focus_order o = {FOCUS_UNIFORM, 0.6, 1, 1};
+        float complex *chip = point_chip(0.025 + shift, 0.025 - shift, &o);
+        const double range_m = (double)(float)(0.025 - shift);
+        const double complex peak = -sqrt(4 * pi) / lambda * cexp(-4 * pi * I * range_m / lambda);
+        for (int k = -60; k <= 60; k++) {
+            const double complex expected =
+                peak * sinc_of_49(0.05 * k - shift) * sinc_of_49(0.05 * k + shift);
+            const double complex found = (double complex)chip[(MIDDLE + k) * SIDE + MIDDLE + k];
+            assert_true(cabs(found - expected) < 2e-4 * cabs(peak));
+        }
+        free(chip);
+    }
+}
+
+/* ---- speckle ---- */
+
+static double share_above(const double *power, int count, double level)
+{
+    int above = 0;
+    for (int i = 0; i < count; i++) {
+        above += power[i] > level;
+    }
+    return (double)above / count;
+}
+
+/* Level ground, of which each ray is a scatterer, 36 in a resolution cell. Nothing is drawn for a
+ * pixel, yet its intensity is exponential: contrast 1 (Goodman). The mean is what the law says of
+ * its cross section, by the cell of Hamming's weighting: 1.36 bins (Harris) either way. */
+TEST(rough_ground_speckles_by_the_sum_of_its_scatterers)
+{
+    enum { CELLS = 960, STEP = 6 };
+    struct mesh m = {0};
+    struct scene s;
+    struct trace_records r;
+    const struct trace_order o = {{0, 15, lambda}, {CELLS, CELLS, 0.1}, 2, 1, 2};
+    shape_box(&m, (struct vec){0, 0, 0}, (struct vec){0.01, 0.01, 0.01},
+              mesh_material(&m, "metal"));
+    assert_int_equal(scene_open(&s, &m, trace_ground_half_m(&o.grid, 15), "test"), 0);
+    assert_int_equal(trace_run(&s, &o, "test", &r, NULL), 0);
+    struct reflect_law law = metal_law(REFLECT_FRESNEL_HH);
+    law.materials[1].diffuse = 0.05; /* F_b = 0: at all angles */
+    const struct focus_order order = {FOCUS_HAMMING, 0.3, 1, 7};
+    float complex *chip = focus_chip(&r, &law, &order);
+    assert_non_null(chip);
+    static double power[CELLS * CELLS / STEP / STEP];
+    int count = 0;
+    double sum = 0, squares = 0;
+    for (int row = 30; row < CELLS - 30; row += STEP) {
+        for (int column = 30; column < CELLS - 30; column += STEP) {
+            power[count] = pow(cabs(chip[row * CELLS + column]), 2);
+            sum += power[count];
+            squares += power[count] * power[count];
+            count++;
+        }
+    }
+    const double mean = sum / count, side_m = 1.36 / focus_band(FOCUS_HAMMING, 0.3);
+    assert_true(count > 20000);
+    assert_near(sqrt(squares / count - mean * mean) / mean, 1, 0.03);
+    for (int k = 1; k <= 4; k++) {
+        assert_near(share_above(power, count, k * mean), exp(-k), 0.01);
+    }
+    /* A ray's tube is step by step tan 15 degrees; a cell of 0.01 m^2 has four. */
+    const double sigma_m2 = 4 * 0.05 * 4 * 0.05 * 0.05 * tan(15 * pi / 180) / 0.01;
+    assert_near(mean / (sigma_m2 * side_m * side_m), 1, 0.03);
+    free(chip);
+    trace_records_free(&r);
+    scene_close(&s);
+    mesh_free(&m);
+}
+
+TEST(pixels_too_coarse_for_the_band_are_refused)
+{
+    const struct trace_records r = {.look = {0, 45, lambda}, .grid = {64, 64, 0.1}};
+    const struct reflect_law law = metal_law(REFLECT_RAYSAR);
+    assert_null(focus_chip(&r, &law, &(struct focus_order){FOCUS_UNIFORM, 0.3, 4, 1}));
+    assert_null(focus_chip(&r, &law, &(struct focus_order){FOCUS_UNIFORM, 4, 1, 1}));
+}
