@@ -32,7 +32,7 @@ def value(lines, name):
 
 
 def run(out, chips, scenario):
-    """mode -> name -> (calls, instructions, most), and the lines of the console."""
+    """mode -> name -> (calls, instructions, most, own), and the lines of the console."""
     m = machine.Machine(machine.BUILD / "bench.elf", out, chips, [("scenario", scenario)], options=("-no-reboot",),
                         limit=600)
     with m:
@@ -40,7 +40,7 @@ def run(out, chips, scenario):
     modes = {}
     for line in m.lines:
         words = line.split()
-        if len(words) == 6 and words[0] == "stage":
+        if len(words) == 7 and words[0] == "stage":
             modes.setdefault(int(words[1]), {})[words[2]] = tuple(map(int, words[3:]))
     return modes, m.lines
 
@@ -49,9 +49,33 @@ def print_mode(name, stages):
     lines = stages.get("line", (0, 0, 0))[0]
     print(f"\n{name}: {lines} lines")
     print(f"  {'':34}{'a line':>10}{'a call':>10}{'worst call':>12}{'calls':>9}")
-    for stage, (calls, instructions, most) in sorted(stages.items(), key=lambda item: -item[1][1]):
+    for stage, (calls, instructions, most, _) in sorted(stages.items(), key=lambda item: -item[1][1]):
         per_line = f"{instructions / lines:10,.0f}" if lines else f"{'':10}"
         print(f"  {stage.removeprefix('lm_'):34}{per_line}{instructions / calls:10,.0f}{most:12,}{calls:9,}")
+
+
+LEAST_SHARE = 0.005
+
+
+def own_costs(stages):
+    """[(instructions a line, stage)] of what a line takes from the map to its grey, without the stages that a stage
+    calls; the most first, and the rest in one."""
+    lines = stages["line"][0]
+    costs = sorted(((own / lines, stage.removeprefix("lm_")) for stage, (_, _, _, own) in stages.items()
+                    if stage.startswith("lm_")), reverse=True)
+    whole = sum(own for own, _ in costs)
+    shown = [(own, stage) for own, stage in costs if own >= LEAST_SHARE * whole]
+    return shown + [(whole - sum(own for own, _ in shown), "all others")], whole
+
+
+def print_own(modes):
+    """A table for each of the goals: a line's cells are 256."""
+    for mode in (0, PATCH, FINER):
+        costs, whole = own_costs(modes[mode])
+        print(f"\n{MODES[mode]}, each stage without those that it calls")
+        print(f"  {'':34}{'a line':>10}{'a pixel':>10}")
+        for own, stage in costs + [(whole, "all")]:
+            print(f"  {stage:34}{own:10,.0f}{own / PATCH_CELLS:10.1f}")
 
 
 def print_line_budget(modes):
@@ -85,15 +109,15 @@ def print_goals(modes, first_picture_us):
             print(f"  {what}{pixel:6.1f} instructions a pixel (goal {goal}), and "
                   f"{paint_pixel:.1f} for painting it on this glass")
     print(f"  GM line of 256 cells:    {line:6,.0f} instructions (goal 20,000), and {paint:,.0f} for painting it")
-    frames, spent, most = modes[0]["steady-frame"]
+    frames, spent, most, _ = modes[0]["steady-frame"]
     print(f"  GM frame, steady sweep:  {spent / frames:6,.0f} instructions (goal 150,000), worst {most:,} of {frames}")
     print(f"  reset to first picture:  {first_picture_us / 1000:6.1f} ms of the guest's time (goal 1,000)")
 
 
 def sum_of(modes, stage):
     """(calls, instructions, most) of a stage in all modes."""
-    found = [stages[stage] for stages in modes.values() if stage in stages] or [(0, 0, 0)]
-    calls, instructions, most = zip(*found)
+    found = [stages[stage] for stages in modes.values() if stage in stages] or [(0, 0, 0, 0)]
+    calls, instructions, most, _ = zip(*found)
     return sum(calls), sum(instructions), max(most)
 
 
@@ -148,6 +172,7 @@ def main():
         return 1
     for mode, stages in sorted(modes.items()):
         print_mode(MODES.get(mode, f"mode {mode}"), stages)
+    print_own(modes)
     print_line_budget(modes)
     first_picture_us = value(lines, "first-picture-us")
     print_goals(modes, first_picture_us)

@@ -1,7 +1,7 @@
 /* A flight that is counted: the unit on the board's flash and display, with one core, no interrupts
  * and no waiting, and the bus handed to it from memory. The sums go out on the console:
  *
- *   stage MODE NAME CALLS INSTRUCTIONS MOST      of chosen functions (images.mk)
+ *   stage MODE NAME CALLS INSTRUCTIONS MOST OWN  of chosen functions (images.mk)
  *   stage MODE line|step|frame-step ...          a line, a step without and with a picture
  *   stage MODE steady-frame|whole-frame ...      a picture of at most three steps, or of more
  *   first-picture-us N                           since the reset */
@@ -95,6 +95,8 @@ static void print(struct drv_uart *u, uint32_t mode, const char *name,
     zcu102_print_number(u, sum->instructions);
     zcu102_print(u, " ");
     zcu102_print_number(u, sum->most);
+    zcu102_print(u, " ");
+    zcu102_print_number(u, sum->own);
     zcu102_print(u, "\n");
 }
 

@@ -4,7 +4,7 @@
 #include <stddef.h>
 #include <string.h>
 
-enum { INST_RETIRED = 8, PMCR_ENABLE_RESET_LONG = 0x47, DEPTH_MAX = 8, CALIBRATIONS = 16 };
+enum { INST_RETIRED = 8, PMCR_ENABLE_RESET_LONG = 0x47, DEPTH_MAX = 16, CALIBRATIONS = 16 };
 
 void instrument_enter(uint64_t stage);
 void instrument_leave(uint64_t stage);
@@ -18,8 +18,11 @@ static struct {
     uint32_t crossing; /* instructions that entering or leaving adds outside of it */
     uint32_t depth, mode;
     uint64_t started[DEPTH_MAX];
-    uint32_t draws, paints; /* bit n: stage n draws a line, or paints it */
-    uint64_t line;          /* of the line drawn last */
+    uint64_t inner[DEPTH_MAX]; /* what the stages that are called in a stage under way have taken */
+    bool samples[INSTRUMENT_STAGES_MAX], draws[INSTRUMENT_STAGES_MAX],
+        paints[INSTRUMENT_STAGES_MAX];
+    uint64_t line;    /* of the line drawn last */
+    uint32_t in_line; /* how many of the stages under way sample or draw a line */
 } state;
 
 static uint32_t counter(void)
@@ -43,14 +46,16 @@ static void go_on_counting(void)
 void instrument_enter(uint64_t stage)
 {
     stop_counting();
-    (void)stage;
+    state.in_line += state.samples[stage] || state.draws[stage];
+    state.inner[state.depth % DEPTH_MAX] = 0;
     state.started[state.depth++ % DEPTH_MAX] = state.now;
     go_on_counting();
 }
 
-static void add(struct instrument_sum *sum, uint64_t spent)
+static void add(struct instrument_sum *sum, uint64_t spent, uint64_t own)
 {
     sum->instructions += spent;
+    sum->own += own;
     sum->calls++;
     sum->most = spent > sum->most ? (uint32_t)spent : sum->most;
 }
@@ -59,11 +64,14 @@ void instrument_leave(uint64_t stage)
 {
     stop_counting();
     const uint64_t spent = state.now - state.started[--state.depth % DEPTH_MAX];
-    add(&state.result.sums[state.mode][stage], spent);
-    if (state.draws >> stage & 1) {
+    add(&state.result.sums[state.mode][stage], spent,
+        state.in_line ? spent - state.inner[state.depth % DEPTH_MAX] : 0);
+    state.in_line -= state.samples[stage] || state.draws[stage];
+    state.inner[(state.depth - 1) % DEPTH_MAX] += spent;
+    if (state.draws[stage]) {
         state.line = spent;
-    } else if (state.paints >> stage & 1) {
-        add(&state.result.lines[state.mode], state.line + spent);
+    } else if (state.paints[stage]) {
+        add(&state.result.lines[state.mode], state.line + spent, 0);
     }
     go_on_counting();
 }
@@ -92,8 +100,9 @@ static bool begins_with(const char *name, const char *begin)
 static void find_lines(void)
 {
     for (uint32_t i = 0; i < instrument_stages; i++) {
-        state.draws |= (uint32_t)ends_in(instrument_names[i], "_draw_line") << i;
-        state.paints |= (uint32_t)begins_with(instrument_names[i], "lm_scan_conv_") << i;
+        state.samples[i] = ends_in(instrument_names[i], "_sample_ahead");
+        state.draws[i] = ends_in(instrument_names[i], "_draw_line");
+        state.paints[i] = begins_with(instrument_names[i], "lm_scan_conv_");
     }
 }
 

@@ -6,10 +6,12 @@
 
 #include <stdint.h>
 
-enum { INSTRUMENT_STAGES_MAX = 40, INSTRUMENT_MODES = 20 };
+enum { INSTRUMENT_STAGES_MAX = 80, INSTRUMENT_MODES = 20 };
 
 struct instrument_sum {
     uint64_t instructions;
+    uint64_t
+        own; /* in stages *_sample_ahead and *_draw_line, without what other stages took in it */
     uint32_t calls, most; /* most: of one call */
 };
 

@@ -6,8 +6,8 @@ word=$1
 library=$2
 nm=$3
 shift 3
-if [ $# -gt 39 ]; then
-    echo "stages.sh: $# functions, and the instrument has room for 39 (INSTRUMENT_STAGES_MAX)" >&2
+if [ $# -gt 79 ]; then
+    echo "stages.sh: $# functions, and the instrument has room for 79 (INSTRUMENT_STAGES_MAX)" >&2
     exit 1
 fi
 has=$("$nm" --defined-only "$library" 2>/dev/null | awk '$2 == "T" { print $3 }')
