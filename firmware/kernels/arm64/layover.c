@@ -6,12 +6,13 @@
 #include "lm/level.h"
 #include "neon.h"
 
+/* Levels are words of 16 bits here, counted from LM_LEVEL_SHADOW up: nothing is below it, eight lie
+ * in a vector, and a share is one subtraction that ends at 0. */
+
 enum {
     GROUP = 16,
-    NOWHERE = INT16_MAX,        /* displacement of a cell without power */
-    REACH_16THS = 32,           /* what one pass takes: displacements up to two cells apart */
-    NOTHING_DB_Q8 = -(1 << 17), /* below every share */
-    ALL_DB_Q8 = 65535
+    NOWHERE = INT16_MAX, /* displacement of a cell without power */
+    REACH_16THS = 32     /* what one pass takes: displacements up to two cells apart */
 };
 
 /* 65535 and 10 log10 of 1 - n / 16: lower bytes, upper bytes. A number above 15 looks up 0. */
@@ -26,25 +27,16 @@ struct tables {
 
 /* The line as it is laid over. */
 struct laid {
-    int32_t *level_db_q8; /* of cell 0; nothing is there yet from entry `filled` on */
+    uint16_t *level; /* of cell 0; nothing is there yet from entry `filled` on */
     int32_t filled;
 };
 
 /* Part of a group, as in c/layover.c. */
 struct pass {
-    int32_t first, most_16ths;
+    int32_t first;
+    uint32_t most_16ths;
     uint8x16_t place_16ths; /* 0..32; anything above for those that take no part */
 };
-
-static inline int32x4x4_t load_16(const int32_t *from)
-{
-    return neon_load_8_and_8(from, from + 8);
-}
-
-static inline void store_16(int32_t *to, int32x4x4_t x)
-{
-    neon_store_8_and_8(to, to + 8, x);
-}
 
 /* Look up sixteen bytes in a row of a table. The compiler must not load it before `after` is known:
  * it has no registers for several rows, and would copy them to the stack and back. */
@@ -54,13 +46,33 @@ static inline uint8x16_t look_up(const uint8_t row[64], uint8x16_t after, uint8x
     return vqtbl4q_u8(vld1q_u8_x4(row), place);
 }
 
-static inline int32x4x4_t sum_16(int32x4x4_t a_q8, int32x4x4_t b_q8)
+static inline uint16x8x2_t load_16(const uint16_t *from)
 {
-    const struct neon_db_sum at = neon_db_sum_of(a_q8, b_q8);
-    const uint8x16_t low = look_up(fx_table_db_sum_lines[0], at.line, at.line);
-    const uint8x16_t high = look_up(fx_table_db_sum_lines[1], low, at.line);
-    const uint8x16_t fall = look_up(fx_table_db_sum_lines[2], high, at.line);
-    return neon_db_sum_raise(low, high, fall, at.place, a_q8, b_q8);
+    return (uint16x8x2_t){{vld1q_u16(from), vld1q_u16(from + 8)}};
+}
+
+static inline void store_16(uint16_t *to, uint16x8x2_t x)
+{
+    vst1q_u16(to, x.val[0]);
+    vst1q_u16(to + 8, x.val[1]);
+}
+
+/* fx_db_q8_sum_vec of sixteen. Below line 32 a place counts from step 0, from there on from step
+ * 256; the last lines have no fall. */
+static inline uint16x8x2_t sum_16(uint16x8x2_t a, uint16x8x2_t b)
+{
+    const uint16x8_t apart[2] = {vabdq_u16(a.val[0], b.val[0]), vabdq_u16(a.val[1], b.val[1])};
+    const uint8x16_t place = vshrn_high_n_u16(vshrn_n_u16(apart[0], 4), apart[1], 4);
+    const uint8x16_t line =
+        vminq_u8(vqshrn_high_n_u16(vqshrn_n_u16(apart[0], 7), apart[1], 7), vdupq_n_u8(63));
+    const uint8x16_t low = look_up(fx_table_db_sum_lines[0], line, line);
+    const uint8x16_t high = look_up(fx_table_db_sum_lines[1], low, line);
+    const uint8x16_t fall = look_up(fx_table_db_sum_lines[2], high, line);
+    const uint16x8_t more_q13[2] = {
+        vmlsl_u8(vreinterpretq_u16_u8(vzip1q_u8(low, high)), vget_low_u8(fall), vget_low_u8(place)),
+        vmlsl_high_u8(vreinterpretq_u16_u8(vzip2q_u8(low, high)), fall, place)};
+    return (uint16x8x2_t){{vsraq_n_u16(vmaxq_u16(a.val[0], b.val[0]), more_q13[0], 5),
+                           vsraq_n_u16(vmaxq_u16(a.val[1], b.val[1]), more_q13[1], 5)}};
 }
 
 /* Saturated to 16 bits. */
@@ -72,33 +84,31 @@ static inline int16x8x2_t narrow_16(int32x4x4_t x)
 
 /* How far the cells of a group are displaced away from the radar, in sixteenths of a cell. */
 static inline int16x8x2_t displace(const struct tables *t, const struct lm_k_layover *l,
-                                   uint32_t group, int32x4x4_t level_db_q8)
+                                   uint32_t group, int16x8x2_t level_db_q8)
 {
     const int32x4_t reference = vdupq_n_s32(l->reference_m_q14);
     const uint32_t *cell = l->cell + group;
+    const int32_t *elevation_m_q14 = l->elevation_m_q14 + group;
     const uint32x4x4_t cells = {
         {vld1q_u32(cell), vld1q_u32(cell + 4), vld1q_u32(cell + 8), vld1q_u32(cell + 12)}};
     const uint8x16_t code = vandq_u8(neon_lower_bytes(neon_lower_halves(cells)), vdupq_n_u8(15));
     const uint16x8x2_t height = neon_words_of_16(t->height, code);
-    const int32x4_t dark = vdupq_n_s32(LM_LEVEL_SHADOW / 2);
-    int32x4x4_t terrain = load_16(l->elevation_m_q14 + group);
-    uint32x4_t is_dark[4];
+    const int16x8_t dark = vdupq_n_s16(LM_LEVEL_SHADOW / 2);
+    int32x4x4_t terrain = neon_load_8_and_8(elevation_m_q14, elevation_m_q14 + 8);
     for (size_t k = 0; k < 4; k++) {
         terrain.val[k] = vqrdmulhq_n_s32(vsubq_s32(reference, terrain.val[k]), l->sixteenths_q31);
-        is_dark[k] = vcleq_s32(level_db_q8.val[k], dark);
     }
     int16x8x2_t away = narrow_16(terrain);
     for (size_t n = 0; n < 2; n++) {
-        const uint16x8_t is_out = vuzp1q_u16(vreinterpretq_u16_u32(is_dark[2 * n]),
-                                             vreinterpretq_u16_u32(is_dark[2 * n + 1]));
-        away.val[n] = vbslq_s16(is_out, vdupq_n_s16(NOWHERE),
+        away.val[n] = vbslq_s16(vcleq_s16(level_db_q8.val[n], dark), vdupq_n_s16(NOWHERE),
                                 vqsubq_s16(away.val[n], vreinterpretq_s16_u16(height.val[n])));
     }
     return away;
 }
 
-/* Take the cells out of a group that are displaced least. False if none is left. */
-static inline bool take(struct pass *p, uint32_t group, int16x8x2_t *away_16ths)
+/* Take the cells out of a group that are displaced least, where some are; *is_last if there are no
+ * others. False if none is left. */
+static inline bool take(struct pass *p, uint32_t group, int16x8x2_t *away_16ths, bool *is_last)
 {
     const int32_t least = vminvq_s16(vminq_s16(away_16ths->val[0], away_16ths->val[1]));
     if (least == NOWHERE) {
@@ -107,116 +117,94 @@ static inline bool take(struct pass *p, uint32_t group, int16x8x2_t *away_16ths)
     const int16x8_t base = vdupq_n_s16((int16_t)(least & ~15));
     const int16x8_t beyond[2] = {vqsubq_s16(away_16ths->val[0], base),
                                  vqsubq_s16(away_16ths->val[1], base)};
-    const int16x8_t reach = vdupq_n_s16(REACH_16THS), nowhere = vdupq_n_s16(NOWHERE);
     p->first = (int32_t)group + (least >> 4);
     p->place_16ths = vqmovun_high_s16(vqmovun_s16(beyond[0]), beyond[1]);
-    const uint8x16_t is_now = vcleq_u8(p->place_16ths, vdupq_n_u8(REACH_16THS));
-    p->most_16ths = vmaxvq_u8(vandq_u8(p->place_16ths, is_now));
-    for (size_t n = 0; n < 2; n++) {
-        away_16ths->val[n] = vbslq_s16(vcleq_s16(beyond[n], reach), nowhere, away_16ths->val[n]);
+    p->most_16ths = vmaxvq_u8(p->place_16ths);
+    *is_last = p->most_16ths <= REACH_16THS;
+    if (!*is_last) {
+        const int16x8_t reach = vdupq_n_s16(REACH_16THS), nowhere = vdupq_n_s16(NOWHERE);
+        const uint8x16_t is_now = vcleq_u8(p->place_16ths, vdupq_n_u8(REACH_16THS));
+        p->most_16ths = vmaxvq_u8(vandq_u8(p->place_16ths, is_now));
+        for (size_t n = 0; n < 2; n++) {
+            away_16ths->val[n] =
+                vbslq_s16(vcleq_s16(beyond[n], reach), nowhere, away_16ths->val[n]);
+        }
     }
     return true;
 }
 
-/* Shares of powers, as levels. */
-static inline int32x4x4_t share(const struct tables *t, int32x4x4_t level_db_q8,
-                                uint8x16_t gone_16ths)
+/* Shares of powers. `below` is what the levels lack to the highest one, 65535. */
+static inline uint16x8x2_t share(const struct tables *t, uint16x8x2_t below, uint8x16_t gone_16ths)
 {
     const uint16x8x2_t left = neon_words_of_16(t->share, gone_16ths);
-    for (size_t n = 0; n < 2; n++) {
-        const uint16x8_t w = left.val[n];
-        level_db_q8.val[2 * n] = vreinterpretq_s32_u32(
-            vaddw_u16(vreinterpretq_u32_s32(level_db_q8.val[2 * n]), vget_low_u16(w)));
-        level_db_q8.val[2 * n + 1] = vreinterpretq_s32_u32(
-            vaddw_high_u16(vreinterpretq_u32_s32(level_db_q8.val[2 * n + 1]), w));
-    }
-    return level_db_q8;
+    return (uint16x8x2_t){
+        {vqsubq_u16(left.val[0], below.val[0]), vqsubq_u16(left.val[1], below.val[1])}};
 }
 
 /* Sixteen numbers from `lanes` lanes before the first one on. */
-static inline int32x4x4_t from_before(int32x4_t before, int32x4x4_t x, const int lanes)
+static inline uint16x8x2_t from_before(uint16x8_t before, uint16x8x2_t x, const int lanes)
 {
-    const int32x4_t all[5] = {before, x.val[0], x.val[1], x.val[2], x.val[3]};
-    int32x4x4_t moved;
-    for (size_t k = 0; k < 4; k++) {
-        moved.val[k] =
-            lanes == 1 ? vextq_s32(all[k], all[k + 1], 3) : vextq_s32(all[k], all[k + 1], 2);
+    if (lanes == 1) {
+        return (uint16x8x2_t){{vextq_u16(before, x.val[0], 7), vextq_u16(x.val[0], x.val[1], 7)}};
     }
-    return moved;
-}
-
-static inline int32x4x4_t no_less(int32x4x4_t x, int32_t least)
-{
-    for (size_t k = 0; k < 4; k++) {
-        x.val[k] = vmaxq_s32(x.val[k], vdupq_n_s32(least));
-    }
-    return x;
-}
-
-/* Add a group that moves by whole cells to where nothing is yet. */
-static inline void move(struct laid *laid, const struct tables *t, const struct pass *p,
-                        int32x4x4_t low_db_q8)
-{
-    store_16(laid->level_db_q8 + p->first,
-             no_less(share(t, low_db_q8, p->place_16ths), LM_LEVEL_SHADOW));
-    laid->filled = p->first + GROUP;
+    return (uint16x8x2_t){{vextq_u16(before, x.val[0], 6), vextq_u16(x.val[0], x.val[1], 6)}};
 }
 
 /* Put an entry where nothing is yet, or add it to what is there. */
-static inline void put(int32_t *to_db_q8, int32_t level_db_q8, bool is_new)
+static inline void put(uint16_t *to, uint32_t level, bool is_new)
 {
-    *to_db_q8 = is_new ? fx_max_i32(level_db_q8, LM_LEVEL_SHADOW)
-                       : fx_db_q8_sum_vec(level_db_q8, *to_db_q8);
+    *to = (uint16_t)(is_new ? level : (uint32_t)fx_db_q8_sum_vec((int32_t)level, *to));
 }
 
-static inline void put_16(int32_t *to_db_q8, int32x4x4_t sum, bool is_new)
+static inline void put_16(uint16_t *to, uint16x8x2_t sum, bool is_new)
 {
-    store_16(to_db_q8, is_new ? no_less(sum, LM_LEVEL_SHADOW) : sum_16(sum, load_16(to_db_q8)));
+    store_16(to, is_new ? sum : sum_16(sum, load_16(to)));
 }
 
 /* Add a group of which no cell moves by more than one cell beyond the first. */
 static inline void add_two(struct laid *laid, const struct tables *t, const struct pass *p,
-                           int32x4x4_t low_db_q8)
+                           uint16x8x2_t below)
 {
-    int32_t *const to_db_q8 = laid->level_db_q8 + p->first;
+    uint16_t *const to = laid->level + p->first;
     const bool is_new = p->first + 1 >= laid->filled;
-    const int32x4_t before = vdupq_n_s32(is_new ? to_db_q8[0] : NOTHING_DB_Q8);
-    const int32x4x4_t next = share(t, low_db_q8, vabdq_u8(p->place_16ths, vdupq_n_u8(16)));
-    const int32x4x4_t own = share(t, low_db_q8, p->place_16ths);
-    put_16(to_db_q8, sum_16(own, from_before(before, next, 1)), is_new);
-    put(to_db_q8 + GROUP, vgetq_lane_s32(next.val[3], 3), is_new);
+    const uint16x8_t before = vdupq_n_u16(is_new ? to[0] : 0);
+    const uint16x8x2_t next = share(t, below, vabdq_u8(p->place_16ths, vdupq_n_u8(16)));
+    const uint16x8x2_t own = share(t, below, p->place_16ths);
+    put_16(to, sum_16(own, from_before(before, next, 1)), is_new);
+    put(to + GROUP, vgetq_lane_u16(next.val[1], 7), is_new);
     laid->filled = fx_max_i32(laid->filled, p->first + 1 + GROUP);
 }
 
 static inline void add_three(struct laid *laid, const struct tables *t, const struct pass *p,
-                             int32x4x4_t low_db_q8)
+                             uint16x8x2_t below)
 {
-    int32_t *const to_db_q8 = laid->level_db_q8 + p->first;
+    uint16_t *const to = laid->level + p->first;
     const bool is_new = p->first + 2 >= laid->filled;
-    const int32x4_t nothing = vdupq_n_s32(NOTHING_DB_Q8);
-    const int32x4_t before = vdupq_n_s32(is_new ? to_db_q8[0] : NOTHING_DB_Q8);
-    const int32x4_t before_second =
-        vsetq_lane_s32(is_new ? to_db_q8[1] : NOTHING_DB_Q8, nothing, 3);
-    const int32x4x4_t next = share(t, low_db_q8, vabdq_u8(p->place_16ths, vdupq_n_u8(16)));
-    const int32x4x4_t second = share(t, low_db_q8, vsubq_u8(vdupq_n_u8(32), p->place_16ths));
-    const int32x4x4_t own = share(t, low_db_q8, p->place_16ths);
-    const int32x4x4_t sum = sum_16(own, from_before(before, next, 1));
-    put_16(to_db_q8, sum_16(sum, from_before(before_second, second, 2)), is_new);
-    put(to_db_q8 + GROUP,
-        fx_db_q8_sum_vec(vgetq_lane_s32(next.val[3], 3), vgetq_lane_s32(second.val[3], 2)), is_new);
-    put(to_db_q8 + GROUP + 1, vgetq_lane_s32(second.val[3], 3), is_new);
+    const uint16x8_t before = vdupq_n_u16(is_new ? to[0] : 0);
+    const uint16x8_t before_second = vsetq_lane_u16(is_new ? to[1] : 0, vdupq_n_u16(0), 7);
+    const uint16x8x2_t next = share(t, below, vabdq_u8(p->place_16ths, vdupq_n_u8(16)));
+    const uint16x8x2_t second = share(t, below, vsubq_u8(vdupq_n_u8(32), p->place_16ths));
+    const uint16x8x2_t own = share(t, below, p->place_16ths);
+    const uint16x8x2_t sum = sum_16(own, from_before(before, next, 1));
+    put_16(to, sum_16(sum, from_before(before_second, second, 2)), is_new);
+    put(to + GROUP,
+        (uint32_t)fx_db_q8_sum_vec(vgetq_lane_u16(next.val[1], 7),
+                                   vgetq_lane_u16(second.val[1], 6)),
+        is_new);
+    put(to + GROUP + 1, vgetq_lane_u16(second.val[1], 7), is_new);
     laid->filled = fx_max_i32(laid->filled, p->first + 2 + GROUP);
 }
 
 static inline void lay(struct laid *laid, const struct tables *t, const struct pass *p,
-                       int32x4x4_t low_db_q8)
+                       uint16x8x2_t below)
 {
     if (p->most_16ths == 0 && p->first >= laid->filled) {
-        move(laid, t, p, low_db_q8);
+        store_16(laid->level + p->first, share(t, below, p->place_16ths));
+        laid->filled = p->first + GROUP;
     } else if (p->most_16ths <= 16) {
-        add_two(laid, t, p, low_db_q8);
+        add_two(laid, t, p, below);
     } else {
-        add_three(laid, t, p, low_db_q8);
+        add_three(laid, t, p, below);
     }
 }
 
@@ -227,28 +215,57 @@ static inline struct tables load_tables(const struct lm_k_layover *line)
         .height = {vld1q_u8(line->height_sixteenths[0]), vld1q_u8(line->height_sixteenths[1])}};
 }
 
+/* Lay a group of sixteen cells over the line. */
+static inline void lay_group(struct laid *laid, const struct tables *t,
+                             const struct lm_k_layover *line, uint32_t group)
+{
+    const int32_t *const level = line->level_db_q8 + group;
+    const int16x8_t most = vdupq_n_s16(LM_K_LAYOVER_MOST_DB_Q8);
+    int16x8x2_t level_db_q8 = narrow_16(neon_load_8_and_8(level, level + 8));
+    int16x8x2_t away_16ths = displace(t, line, group, level_db_q8);
+    uint16x8x2_t below;
+    struct pass p;
+    bool is_last = false;
+    for (size_t n = 0; n < 2; n++) {
+        level_db_q8.val[n] = vminq_s16(level_db_q8.val[n], most);
+        below.val[n] = veorq_u16(vreinterpretq_u16_s16(level_db_q8.val[n]), vdupq_n_u16(INT16_MAX));
+    }
+    while (!is_last && take(&p, group, &away_16ths, &is_last)) {
+        if (p.first >= -LM_K_LAYOVER_MARGIN && p.first < (int32_t)line->cells) {
+            lay(laid, t, &p, below);
+        }
+    }
+}
+
+/* Levels of the words of a line. */
+static inline void widen(const uint16_t *word, int32_t *level_db_q8, int32_t count)
+{
+    const uint32x4_t shadow = vreinterpretq_u32_s32(vdupq_n_s32(LM_LEVEL_SHADOW));
+    for (int32_t i = 0; i < count; i += GROUP) {
+        const uint16x8x2_t levels = load_16(word + i);
+        int32x4x4_t wide;
+        for (size_t n = 0; n < 2; n++) {
+            const uint16x8_t w = levels.val[n];
+            wide.val[2 * n] = vreinterpretq_s32_u32(vaddw_u16(shadow, vget_low_u16(w)));
+            wide.val[2 * n + 1] = vreinterpretq_s32_u32(vaddw_high_u16(shadow, w));
+        }
+        vst1q_s32_x4(level_db_q8 + i, wide);
+    }
+}
+
 void lm_k_layover(const struct lm_k_layover *lent, int32_t *laid_db_q8)
 {
     const struct lm_k_layover copy = *lent, *const line = &copy; /* no store can change it */
     const int32_t margin = LM_K_LAYOVER_MARGIN, cells = (int32_t)line->cells;
     const struct tables tables = load_tables(line);
-    struct laid laid = {laid_db_q8 + margin, -margin};
-    const int32x4_t dark = vdupq_n_s32(LM_LEVEL_SHADOW);
-    const int32x4x4_t all_dark = {{dark, dark, dark, dark}};
+    uint16_t word[LM_K_LAYOVER_ROOM];
+    struct laid laid = {word + margin, -margin};
+    const uint16x8x2_t dark = {{vdupq_n_u16(0), vdupq_n_u16(0)}};
     for (int32_t i = 0; i < margin + cells + margin; i += GROUP) {
-        store_16(laid_db_q8 + i, all_dark);
+        store_16(word + i, dark);
     }
     for (uint32_t group = 0; group < line->cells; group += GROUP) {
-        int32x4x4_t level_db_q8 = load_16(line->level_db_q8 + group);
-        int16x8x2_t away_16ths = displace(&tables, line, group, level_db_q8);
-        struct pass p;
-        for (size_t k = 0; k < 4; k++) {
-            level_db_q8.val[k] = vsubq_s32(level_db_q8.val[k], vdupq_n_s32(ALL_DB_Q8));
-        }
-        while (take(&p, group, &away_16ths)) {
-            if (p.first >= -margin && p.first < cells) {
-                lay(&laid, &tables, &p, level_db_q8);
-            }
-        }
+        lay_group(&laid, &tables, line, group);
     }
+    widen(word + margin, laid_db_q8 + margin, cells);
 }

@@ -7,10 +7,10 @@
 
 enum {
     GROUP = 16,
-    NOWHERE = INT16_MAX,        /* displacement of a cell without power */
-    REACH_16THS = 32,           /* what one pass takes: displacements up to two cells apart */
-    NOT_NOW = 255,              /* place of a cell that takes no part in a pass */
-    NOTHING_DB_Q8 = -(1 << 17), /* below every share */
+    NOWHERE = INT16_MAX, /* displacement of a cell without power */
+    REACH_16THS = 32,    /* what one pass takes: displacements up to two cells apart */
+    NOT_NOW = 255,       /* place of a cell that takes no part in a pass */
+    NOTHING_DB_Q8 = LM_LEVEL_SHADOW
 };
 
 /* 10 log10 of 1 - n / 16. The last is that of no share: 256 dB. */
@@ -77,7 +77,9 @@ static bool take(struct pass *restrict p, uint32_t group, int32_t *restrict away
 /* Share of a power, as a level: `gone_16ths` of it are not in it; none of it for other numbers. */
 static inline int32_t share(int32_t level_db_q8, int32_t gone_16ths)
 {
-    return level_db_q8 + share_db_q8[gone_16ths < 0 || gone_16ths > 16 ? 16 : gone_16ths];
+    const int32_t gone_db_q8 = share_db_q8[gone_16ths < 0 || gone_16ths > 16 ? 16 : gone_16ths];
+    const int32_t most_db_q8 = fx_min_i32(level_db_q8, LM_K_LAYOVER_MOST_DB_Q8);
+    return fx_max_i32(most_db_q8 + gone_db_q8, NOTHING_DB_Q8);
 }
 
 /* Sums of shares, from the pass's first cell on: those of the cells at hand, and what the cells
@@ -113,8 +115,7 @@ static uint32_t sum_shares(const struct pass *p, const int32_t *level_db_q8,
 static void copy(struct laid *laid, const struct pass *p, const int32_t *level_db_q8)
 {
     for (uint32_t k = 0; k < GROUP; k++) {
-        const int32_t level = share(level_db_q8[k], p->place_16ths[k]);
-        laid->level_db_q8[p->first + (int32_t)k] = fx_max_i32(level, LM_LEVEL_SHADOW);
+        laid->level_db_q8[p->first + (int32_t)k] = share(level_db_q8[k], p->place_16ths[k]);
     }
     laid->filled = p->first + GROUP;
 }
@@ -128,7 +129,7 @@ static void add(struct laid *laid, const struct pass *p, const int32_t *level_db
     const uint32_t count = sum_shares(p, level_db_q8, is_new ? to_db_q8 : nothing_db_q8, sum_db_q8);
     if (is_new) {
         for (uint32_t k = 0; k < GROUP; k++) {
-            to_db_q8[k] = fx_max_i32(sum_db_q8[k], LM_LEVEL_SHADOW);
+            to_db_q8[k] = sum_db_q8[k];
         }
     } else {
         for (uint32_t k = 0; k < GROUP; k++) {
@@ -136,8 +137,7 @@ static void add(struct laid *laid, const struct pass *p, const int32_t *level_db
         }
     }
     for (uint32_t k = GROUP; k < count; k++) {
-        to_db_q8[k] = is_new ? fx_max_i32(sum_db_q8[k], LM_LEVEL_SHADOW)
-                             : fx_db_q8_sum_vec(sum_db_q8[k], to_db_q8[k]);
+        to_db_q8[k] = is_new ? sum_db_q8[k] : fx_db_q8_sum_vec(sum_db_q8[k], to_db_q8[k]);
     }
     laid->filled = fx_max_i32(laid->filled, beyond + GROUP);
 }

@@ -145,7 +145,9 @@ void lm_k_grain_stretch(const uint8_t *weight_q7, uint32_t step_q16, const int8_
 
 enum {
     LM_K_LAYOVER_MARGIN = 32, /* entries of `laid_db_q8` before the line, and behind it */
-    LM_K_LAYOVER_ROOM = LM_K_LAYOVER_MARGIN + LM_CELLS_ROOM + LM_K_LAYOVER_MARGIN
+    LM_K_LAYOVER_ROOM = LM_K_LAYOVER_MARGIN + LM_CELLS_ROOM + LM_K_LAYOVER_MARGIN,
+    /* A higher level counts as 96 dB. A line's cells together are 27 dB more, in 16 bits. */
+    LM_K_LAYOVER_MOST_DB_Q8 = 96 * 256
 };
 
 /* A line whose tops are displaced. */
@@ -167,10 +169,11 @@ struct lm_k_layover {
  * - A place is a whole number of sixteenths of a cell. Power is shared between the two cells around
  *   it: n/16 for the farther one.
  * - A level of at most half of LM_LEVEL_SHADOW has no power. Cells that get none have
- *   LM_LEVEL_SHADOW, or a little more where others were added and left out.
+ *   LM_LEVEL_SHADOW, or a little more where others were added and left out: 3 dB for one, which
+ *   are 70 dB below the least power that counts.
  * - Each sum's worst error is 0.018 dB.
  *
- * Cost: 8 a cell where nothing moves, 11 over hills, 15 in towns. A group is a pass for each two
+ * Cost: @ a cell where nothing moves, @ over hills, @ in towns. A group is a pass for each two
  * cells that its places are apart. */
 void lm_k_layover(const struct lm_k_layover *line, int32_t *laid_db_q8);
 
