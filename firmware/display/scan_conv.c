@@ -426,8 +426,7 @@ struct strip {
     uint16_t grey[ROWS_AT_ONCE];        /* of the second line */
     uint16_t column_px[ROWS_AT_ONCE];   /* of the next pixel */
     uint16_t share_q7[4][ROWS_AT_ONCE]; /* of the second line in each pixel; all of it behind it */
-    uint16_t pair[2]
-                 [ROWS_AT_ONCE]; /* greys, two pixels in a number: the left one is the lower byte */
+    uint32_t pixels[ROWS_AT_ONCE];      /* greys of four, or of two: the left one is lowest */
 };
 
 /* Grey between two. A difference is below 2^8, times 2^7: 16 bits hold it. */
@@ -437,12 +436,19 @@ static inline uint16_t grey_between(uint16_t first, uint16_t second, uint16_t sh
     return (uint16_t)(first + (more >> 7));
 }
 
-/* Greys of the second line at the middles of the rows. Two cells are read as one number. */
+/* Greys of the second line at the middles of the rows. Two cells are read as one number, and four
+ * rows at once: more are read before one is written, and a turn has little beside. */
 static inline void set_greys(const struct lm_patch_painter *p, uint32_t first, const uint8_t *grey,
                              struct strip *s)
 {
-    for (uint32_t i = 0; i < ROWS_AT_ONCE; i++) {
-        s->grey[i] = fx_load_u16(grey + p->cell[first + i]);
+    const uint16_t *cell = p->cell + first;
+    for (uint16_t *to = s->grey; to != s->grey + ROWS_AT_ONCE; to += 4, cell += 4) {
+        const uint16_t a = fx_load_u16(grey + cell[0]), b = fx_load_u16(grey + cell[1]);
+        const uint16_t c = fx_load_u16(grey + cell[2]), d = fx_load_u16(grey + cell[3]);
+        to[0] = a;
+        to[1] = b;
+        to[2] = c;
+        to[3] = d;
     }
     for (uint32_t i = 0; i < ROWS_AT_ONCE; i++) {
         s->grey[i] = grey_between(s->grey[i] & 255, s->grey[i] >> 8, p->part_q7[first + i]);
@@ -450,45 +456,50 @@ static inline void set_greys(const struct lm_patch_painter *p, uint32_t first, c
 }
 
 /* Shares of the second line in the next pixels of each row. Then move on, by the pixels that lie
- * before the second line. */
+ * before the second line: those whose shares are not whole. What is 2^8 lines beyond it shares as
+ * what is farther does; three steps are 2^7.6 lines more, and in 128ths all takes 16 bits. */
 static inline void set_shares(struct lm_patch_painter *p, uint32_t first, uint32_t most_px,
                               struct strip *s)
 {
     for (uint32_t i = 0; i < ROWS_AT_ONCE; i++) {
-        const int32_t step_q20 = p->step_q20[first + i];
-        int32_t on_q20 = p->on_q20[first + i], next_q20 = on_q20;
-        uint32_t count = 0;
-        for (uint32_t k = 0; k < most_px; k++, on_q20 += step_q20) {
-            s->share_q7[k][i] = (uint16_t)fx_min_i32(on_q20 >> 13, SHARE_Q7);
-            next_q20 += on_q20 < LINE_Q20 ? step_q20 : 0;
-            count += on_q20 < LINE_Q20;
+        const uint32_t step_q20 = (uint32_t)p->step_q20[first + i];
+        const uint32_t on_q20 = (uint32_t)p->on_q20[first + i];
+        const uint32_t near_q20 = fx_min_u32(on_q20, (uint32_t)LINE_Q20 << 8);
+        uint16_t count = 0;
+        for (uint32_t k = 0; k < most_px; k++) {
+            const uint16_t on_q7 = (uint16_t)((near_q20 + k * step_q20) >> 13);
+            const uint16_t share_q7 = on_q7 < SHARE_Q7 ? on_q7 : SHARE_Q7;
+            s->share_q7[k][i] = share_q7;
+            count = (uint16_t)(count + (share_q7 < SHARE_Q7));
         }
         s->column_px[i] = p->column_px[first + i];
         p->column_px[first + i] = (uint16_t)(s->column_px[i] + count);
-        p->on_q20[first + i] = next_q20 - LINE_Q20;
+        p->on_q20[first + i] = (int32_t)(on_q20 + count * step_q20 - LINE_Q20);
     }
 }
 
-/* Greys of the pixels, two at a time. */
-static inline void set_pairs(struct lm_patch_painter *p, uint32_t first, uint32_t most_px,
-                             struct strip *s)
+/* Greys of the next pixels of each row, as one number. */
+static inline void set_pixels(struct lm_patch_painter *p, uint32_t first, uint32_t most_px,
+                              struct strip *s)
 {
-    for (uint32_t k = 0; k < most_px; k += 2) {
-        for (uint32_t i = 0; i < ROWS_AT_ONCE; i++) {
-            const uint16_t before = p->grey[first + i], here = s->grey[i];
+    for (uint32_t i = 0; i < ROWS_AT_ONCE; i++) {
+        const uint16_t before = p->grey[first + i], here = s->grey[i];
+        uint16_t pair[2] = {0, 0};
+        for (uint32_t k = 0; k < most_px; k += 2) {
             const uint16_t left = grey_between(before, here, s->share_q7[k][i]);
             const uint16_t right = grey_between(before, here, s->share_q7[k + 1][i]);
-            s->pair[k / 2][i] = (uint16_t)(left | right << 8);
+            pair[k / 2] = (uint16_t)(left | right << 8);
         }
+        s->pixels[i] = pair[0] | (uint32_t)pair[1] << 16;
     }
 }
 
 /* True if no row ends within the next `most_px` pixels. */
 static inline bool are_whole(const struct strip *s, uint32_t rows, uint32_t most_px, uint32_t right)
 {
-    uint32_t farthest = 0;
+    uint16_t farthest = 0;
     for (uint32_t i = 0; i < rows; i++) {
-        farthest = fx_max_u32(farthest, s->column_px[i]);
+        farthest = s->column_px[i] > farthest ? s->column_px[i] : farthest;
     }
     return farthest + most_px <= right;
 }
@@ -499,11 +510,16 @@ static inline void store(struct lm_patch_painter *p, uint32_t first, uint32_t ro
 {
     const uint32_t right = (uint32_t)p->square.left_px + p->square.width_px;
     if (are_whole(s, rows, most_px, right)) {
-        for (uint32_t i = 0; i < rows; i++, row += up) {
-            fx_store_u16(row + s->column_px[i], s->pair[0][i]);
+        const uint16_t *column_px = s->column_px;
+        const uint32_t *pixels = s->pixels;
+        for (const uint32_t *const end = pixels + rows; pixels != end; row += up) {
             if (most_px > 2) {
-                fx_store_u16(row + s->column_px[i] + 2, s->pair[1][i]);
+                fx_store_u32(row + *column_px++, *pixels++);
+            } else {
+                fx_store_u16(row + *column_px++, *pixels++);
             }
+            /* Keep two pointers: the compiler would make both from one number in each turn. */
+            __asm__("" : "+r"(column_px), "+r"(pixels));
         }
         return;
     }
@@ -511,7 +527,7 @@ static inline void store(struct lm_patch_painter *p, uint32_t first, uint32_t ro
         uint16_t *const end = &p->column_px[first + i];
         *end = (uint16_t)fx_min_u32(*end, right);
         for (uint32_t k = 0, x = s->column_px[i]; x < *end; k++, x++) {
-            row[x] = (uint8_t)(s->pair[k / 2][i] >> k % 2 * 8);
+            row[x] = (uint8_t)(s->pixels[i] >> 8 * k);
         }
     }
 }
@@ -522,7 +538,7 @@ static inline void paint_strip(struct lm_patch_painter *p, uint32_t first, uint3
                                uint32_t most_px, struct strip *s, uint8_t *row, ptrdiff_t up)
 {
     set_shares(p, first, most_px, s);
-    set_pairs(p, first, most_px, s);
+    set_pixels(p, first, most_px, s);
     store(p, first, rows, most_px, s, row, up);
 }
 
