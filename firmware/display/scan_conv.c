@@ -228,24 +228,28 @@ static inline struct wedge paint_rows(struct wedge w, int32_t rows, struct asked
 }
 
 /* Mark the rows of a wedge in a plane's damage, band by band. Its edges are straight, so they are
- * farthest out in the first or the last row of a band. `left` and `right` are at the first row. */
-static void mark_wedge(const struct lm_plane *plane, const struct lm_ppi *ppi, struct edge left,
-                       struct edge right, const struct rows *rows, const struct columns *columns)
+ * farthest out in the first or the last row of a band, of which the first band and the last may have
+ * fewer: what they mark beside the wedge is a pixel or two. `left` and `right` are at the first
+ * row. */
+static void mark_wedge(const struct lm_plane *plane, const struct lm_ppi *ppi,
+                       const struct edge *left, const struct edge *right, const struct rows *rows,
+                       const struct columns *columns)
 {
     const int32_t first = ppi->apex_x_px + columns->first, end = ppi->apex_x_px + columns->end;
-    for (int32_t row = rows->first, more; row < rows->end; row += more) {
-        const int32_t y = ppi->apex_y_px - 1 - row;
-        more = fx_min_i32(y % LM_BLOCK_HEIGHT_PX + 1, rows->end - row);
-        const struct edge l = left, r = right;
-        skip_rows(&left, more - 1);
-        skip_rows(&right, more - 1);
-        const int32_t from = (int32_t)((l.x_q17 < left.x_q17 ? l.x_q17 : left.x_q17) >> 17);
-        const int32_t to = (int32_t)((r.x_q17 > right.x_q17 ? r.x_q17 : right.x_q17) >> 17);
-        lm_damage_mark_band(plane->damage, (uint32_t)y / LM_BLOCK_HEIGHT_PX,
-                            fx_max_i32(ppi->apex_x_px + from, first),
-                            fx_min_i32(ppi->apex_x_px + to, end));
-        skip_rows(&left, 1);
-        skip_rows(&right, 1);
+    const int64_t apex_q17 = (int64_t)ppi->apex_x_px << 17;
+    const int32_t y = ppi->apex_y_px - 1 - rows->first, last_y = ppi->apex_y_px - rows->end;
+    const int64_t before = LM_BLOCK_HEIGHT_PX - 1 - y % LM_BLOCK_HEIGHT_PX; /* rows of the first */
+    const int64_t last = LM_BLOCK_HEIGHT_PX - 1;
+    int64_t from_q17 = apex_q17 + left->x_q17 - before * left->step_q17 +
+                       (left->step_q17 < 0 ? last * left->step_q17 : 0);
+    int64_t to_q17 = apex_q17 + right->x_q17 - before * right->step_q17 +
+                     (right->step_q17 > 0 ? last * right->step_q17 : 0);
+    for (int32_t band = y / LM_BLOCK_HEIGHT_PX; band >= last_y / LM_BLOCK_HEIGHT_PX; band--) {
+        lm_damage_mark_band(plane->damage, (uint32_t)band,
+                            fx_max_i32((int32_t)(from_q17 >> 17), first),
+                            fx_min_i32((int32_t)(to_q17 >> 17), end));
+        from_q17 += LM_BLOCK_HEIGHT_PX * left->step_q17;
+        to_q17 += LM_BLOCK_HEIGHT_PX * right->step_q17;
     }
 }
 
@@ -267,17 +271,20 @@ void lm_scan_conv_sector(const struct lm_plane *plane, const struct lm_ppi *ppi,
     skip_rows(&w.left, rows.first);
     skip_rows(&w.right, rows.first);
     if (plane->damage) {
-        mark_wedge(plane, ppi, w.left, w.right, &rows, &columns);
+        mark_wedge(plane, ppi, &w.left, &w.right, &rows, &columns);
     }
     w.apex =
         plane->pixels + ppi->apex_x_px + (ptrdiff_t)(ppi->apex_y_px - 1 - rows.first) * w.width_px;
     w.range_q33 = (2 * rows.first + 1) * w.along.up_q32 + w.along.right_q32 -
                   (int64_t)ppi->near_cells_q8 * (1 << 25);
+    const struct rows middle = clip_rows(&rows, sure.first, sure.end);
     if (!are_inside(&w.left, &w.right, &rows, &columns)) {
-        paint_rows(w, rows.end - rows.first, (struct asked){true, true}, &columns, grey, cells);
+        const struct asked both = {true, true}, in_columns = {true, false};
+        w = paint_rows(w, middle.first - rows.first, both, &columns, grey, cells);
+        w = paint_rows(w, middle.end - middle.first, in_columns, &columns, grey, cells);
+        paint_rows(w, rows.end - middle.end, both, &columns, grey, cells);
         return;
     }
-    const struct rows middle = clip_rows(&rows, sure.first, sure.end);
     const struct asked range = {false, true}, nothing = {false, false};
     w = paint_rows(w, middle.first - rows.first, range, &columns, grey, cells);
     w = paint_rows(w, middle.end - middle.first, nothing, &columns, grey, cells);
