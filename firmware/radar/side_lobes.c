@@ -2,6 +2,7 @@
 
 #include <stdbool.h>
 
+#include "fx/bits.h"
 #include "fx/hash.h"
 #include "fx/log.h"
 #include "fx/sat.h"
@@ -11,6 +12,7 @@
 #include "lm/units.h"
 
 _Static_assert((int)LM_K_LOBES == 2 * LM_RESPONSE_REACH, "the kernel adds all but the last");
+_Static_assert(2 * (int)LM_K_BESIDE == LM_RESPONSE_REACH, "the kernel looks as far");
 
 /* The main lobe reaches to 1.66 cells: cells beside a point's own are in it, and so is a part of
  * those behind them. Its power is in the cell's level already. */
@@ -85,73 +87,115 @@ static inline bool stands_out(const int32_t *level_db_q8, uint32_t cell, uint32_
     return true;
 }
 
-/* Insert a strong cell by its level: after those that are as strong. The weakest drops out of a
- * full line. Out of line, it takes no registers from the search. */
-static __attribute__((noinline)) void insert(struct lm_side_lobes *s, uint32_t line, uint32_t cell,
-                                             int32_t level_db_q8, uint32_t seed)
+/* A line that is searched: its number and levels, and the level from which on a cell counts. */
+struct search {
+    struct lm_side_lobes *s;
+    const int32_t *level_db_q8;
+    uint32_t line, cells, seed;
+    int32_t least_db_q8;
+};
+
+/* True if a strong cell comes before a cell: it is stronger, or as strong and nearer. */
+static inline bool is_before(const struct lm_strong_cell *p, uint32_t cell, int32_t level_db_q8)
 {
-    const uint32_t slot = line % LM_SIDE_LOBES_LINES, draw = fx_hash3(line, cell, seed);
-    struct lm_strong_cell *const strong = s->line[slot].strong;
-    uint32_t at = fx_min_u32(s->line[slot].count, s->config->a_line - 1u);
-    for (; at > 0 && strong[at - 1].level_db_q8 < level_db_q8; at--) {
+    return p->level_db_q8 > level_db_q8 ||
+           (p->level_db_q8 == level_db_q8 && p->cell < (int32_t)cell);
+}
+
+/* Insert a cell by its level if it stands out. The weakest drops out of a full line, and what is
+ * weaker counts no more. Out of line, it takes no registers from the search. */
+static __attribute__((noinline)) void consider(struct search *of, uint32_t cell)
+{
+    const struct lm_side_lobe_config *const config = of->s->config;
+    struct lm_strong_cell *const strong = of->s->line[of->line % LM_SIDE_LOBES_LINES].strong;
+    uint32_t *const count = &of->s->line[of->line % LM_SIDE_LOBES_LINES].count;
+    const int32_t level_db_q8 = of->level_db_q8[cell];
+    const bool is_full = *count == config->a_line;
+    if ((is_full && is_before(&strong[*count - 1], cell, level_db_q8)) ||
+        !stands_out(of->level_db_q8, cell, of->cells, config->above_db_q8)) {
+        return;
+    }
+    const uint32_t draw = fx_hash3(of->line, cell, of->seed);
+    uint32_t at = is_full ? *count - 1 : (*count)++;
+    for (; at > 0 && !is_before(&strong[at - 1], cell, level_db_q8); at--) {
         strong[at] = strong[at - 1];
     }
     strong[at] = (struct lm_strong_cell){(int32_t)cell, level_db_q8, draw % LM_SIDE_LOBES_OFFSETS,
                                          draw / LM_SIDE_LOBES_OFFSETS % LM_SIDE_LOBES_OFFSETS};
-    s->line[slot].count = fx_min_u32(s->line[slot].count + 1, s->config->a_line);
+    if (*count == config->a_line) {
+        of->least_db_q8 = strong[*count - 1].level_db_q8;
+    }
 }
 
-/* Cells first..end - 1 of a line. */
-struct stretch {
-    uint32_t line, first, end, cells;
+/* Cells of a group that may count, bit by bit: all that are high enough where the line ends near. */
+static inline uint32_t cells_of(const struct search *of, uint32_t first)
+{
+    const uint32_t end = fx_min_u32(first + LM_K_HIGHEST_CELLS, of->cells);
+    const int32_t *const level_db_q8 = of->level_db_q8 + first;
+    if (first >= LM_K_BESIDE && first + LM_K_HIGHEST_CELLS + LM_K_BESIDE <= of->cells) {
+        return lm_k_stand_out(level_db_q8, of->least_db_q8, of->s->config->above_db_q8);
+    }
+    uint32_t mask = 0;
+    for (uint32_t k = 0; k < end - first; k++) {
+        mask |= (uint32_t)(level_db_q8[k] >= of->least_db_q8) << k;
+    }
+    return mask;
+}
+
+/* Search a group of cells. */
+static inline void search_group(struct search *of, uint32_t first)
+{
+    for (uint32_t mask = cells_of(of, first); mask != 0; mask &= mask - 1) {
+        consider(of, first + 31 - (uint32_t)fx_clz32(mask & (0 - mask)));
+    }
+}
+
+enum {
+    GROUPS = (LM_CELLS_MAX + LM_K_HIGHEST_CELLS - 1) / LM_K_HIGHEST_CELLS,
+    GROUPS_LOG2 = 6,
+    KEY_MAX_DB_Q8 = 1 << 24 /* levels take 17 bits; what stands behind the last may be anything */
 };
 
-/* Least level of a cell that may still be inserted. */
-static int32_t least_now(const struct lm_side_lobes *s, uint32_t line, int32_t least_db_q8)
-{
-    const uint32_t slot = line % LM_SIDE_LOBES_LINES;
-    return s->line[slot].count == s->config->a_line
-               ? s->line[slot].strong[s->config->a_line - 1].level_db_q8 + 1
-               : least_db_q8;
-}
+_Static_assert(GROUPS <= 1 << GROUPS_LOG2, "a key holds the number of a group");
 
-/* Search a stretch for strong cells. Returns the least level of the next. */
-static int32_t search(struct lm_side_lobes *s, struct stretch at, const int32_t *level_db_q8,
-                      int32_t least_db_q8, uint32_t seed)
+/* Groups are searched by their highest cells, the highest first: soon few count. A key is that
+ * level, and in its lower bits what makes keys differ: the first of equal groups has the largest. */
+static void search_groups(struct search *of)
 {
-    const int32_t *const end = level_db_q8 + at.end;
-    int32_t least = least_db_q8;
-    for (const int32_t *level = level_db_q8 + at.first; level != end; level++) {
-        if (*level >= least) {
-            const uint32_t cell = (uint32_t)(level - level_db_q8);
-            if (stands_out(level_db_q8, cell, at.cells, s->config->above_db_q8)) {
-                insert(s, at.line, cell, *level, seed);
-                least = least_now(s, at.line, least_db_q8);
-            }
-        }
+    int32_t key[GROUPS];
+    const uint32_t groups = (of->cells + LM_K_HIGHEST_CELLS - 1) / LM_K_HIGHEST_CELLS;
+    lm_k_highest(of->level_db_q8, key, of->cells);
+    for (uint32_t n = 0; n < groups; n++) {
+        const int32_t highest_db_q8 = fx_clamp_i32(key[n], -KEY_MAX_DB_Q8, KEY_MAX_DB_Q8 - 1);
+        key[n] = highest_db_q8 * (1 << GROUPS_LOG2) + (int32_t)((1u << GROUPS_LOG2) - 1 - n);
     }
-    return least;
+    for (uint32_t turn = 0; turn < groups; turn++) {
+        int32_t most = INT32_MIN;
+        for (uint32_t n = 0; n < groups; n++) {
+            most = fx_max_i32(most, key[n]);
+        }
+        if (most >> GROUPS_LOG2 < of->least_db_q8) {
+            return;
+        }
+        const uint32_t group = ~(uint32_t)most % (1u << GROUPS_LOG2);
+        key[group] = INT32_MIN;
+        search_group(of, group * LM_K_HIGHEST_CELLS);
+    }
 }
 
 void lm_side_lobes_find(struct lm_side_lobes *s, uint32_t line, const int32_t *level_db_q8,
                         uint32_t cells, int32_t shadow_db_q8, uint32_t seed)
 {
-    int32_t highest_db_q8[LM_CELLS_MAX / LM_K_HIGHEST_CELLS + 2];
-    int32_t least = s->config->a_line != 0 && shadow_db_q8 < LM_SIDE_LOBES_NONE
-                        ? shadow_db_q8 + s->config->over_shadow_db_q8
-                        : INT32_MAX;
     s->line[line % LM_SIDE_LOBES_LINES].count = 0;
     s->found = line + 1;
-    lm_k_highest(level_db_q8, highest_db_q8, cells);
-    for (uint32_t first = 0; first < cells; first += 2 * LM_K_HIGHEST_CELLS) {
-        const int32_t *const of_two = &highest_db_q8[first / LM_K_HIGHEST_CELLS];
-        if (fx_max_i32(of_two[0], of_two[1]) >= least) {
-            const uint32_t middle = first + LM_K_HIGHEST_CELLS;
-            const uint32_t from = of_two[0] >= least ? first : middle;
-            const uint32_t end =
-                fx_min_u32(of_two[1] >= least ? middle + LM_K_HIGHEST_CELLS : middle, cells);
-            least = search(s, (struct stretch){line, from, end, cells}, level_db_q8, least, seed);
-        }
+    if (s->config->a_line != 0 && shadow_db_q8 < LM_SIDE_LOBES_NONE) {
+        struct search of = {.s = s,
+                            .level_db_q8 = level_db_q8,
+                            .line = line,
+                            .cells = cells,
+                            .seed = seed,
+                            .least_db_q8 = shadow_db_q8 + s->config->over_shadow_db_q8};
+        search_groups(&of);
     }
 }
 

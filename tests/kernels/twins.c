@@ -483,8 +483,27 @@ static void run_levels_mean(const struct input *in, struct output *out, bool is_
 static void run_highest(const struct input *in, struct output *out, bool is_plain)
 {
     TWIN(lm_k_highest)(in->level_db_q8, signed_line(out->line[0]), in->cells);
-    out->end[0] = (in->cells + 15) / 16 * 2;
+    out->end[0] = (in->cells + LM_K_HIGHEST_CELLS - 1) / LM_K_HIGHEST_CELLS;
     out->room = out->end[0];
+}
+
+/* Peaks that stand about as high as is asked. */
+static void draw_peaks(struct input *in)
+{
+    draw_levels(in);
+    in->number[0] = within_size(in, 1 << 17);
+    in->number[1] = within_size(in, hs_rng_below(&in->rng, 2) ? 1 << 17 : 1 << 8);
+    for (uint32_t k = 0; k < ROOM; k += 1 + hs_rng_below(&in->rng, 6)) {
+        in->level_db_q8[k] = in->number[0] + within_size(in, 1 << 12);
+    }
+}
+
+static void run_stand_out(const struct input *in, struct output *out, bool is_plain)
+{
+    for (uint32_t k = 0; k < in->cells; k++) {
+        out->line[0][k] = TWIN(lm_k_stand_out)(in->level_db_q8 + LM_K_BESIDE + k, in->number[0],
+                                               in->number[1]);
+    }
 }
 
 /* Side lobes of 0 to -64 dB, from a point near the levels' middle. */
@@ -608,6 +627,7 @@ static const struct kernel kernels[] = {
     {"lm_k_levels_add", draw_levels, run_levels_add},
     {"lm_k_levels_mean", draw_levels, run_levels_mean},
     {"lm_k_highest", draw_levels, run_highest},
+    {"lm_k_stand_out", draw_peaks, run_stand_out},
     {"lm_k_side_lobes", draw_levels, run_side_lobes},
     {"lm_k_beam_sum", draw_powers, run_beam_sum},
     {"lm_k_fade", draw_fade, run_fade},

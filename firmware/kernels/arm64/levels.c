@@ -48,14 +48,41 @@ void lm_k_levels_mean(const int32_t *sum_db_q8, int32_t less_db_q8, int32_t leas
 
 void lm_k_highest(const int32_t *level_db_q8, int32_t *highest_db_q8, uint32_t cells)
 {
-    for (size_t i = 0; i < cells; i += 16) {
+    for (size_t i = 0; i < cells; i += LM_K_HIGHEST_CELLS) {
         const int32x4x4_t level = vld1q_s32_x4(level_db_q8 + i);
-        const int32x4_t of_pairs = vpmaxq_s32(vmaxq_s32(level.val[0], level.val[1]),
-                                              vmaxq_s32(level.val[2], level.val[3]));
-        const int32x4_t of_eights = vpmaxq_s32(of_pairs, of_pairs);
-        vst1_s32(highest_db_q8, vget_low_s32(of_eights));
-        highest_db_q8 += 2;
+        *highest_db_q8++ = vmaxvq_s32(vmaxq_s32(vmaxq_s32(level.val[0], level.val[1]),
+                                                vmaxq_s32(level.val[2], level.val[3])));
     }
+}
+
+static inline int16x8_t neon_narrow_8(const int32_t *from)
+{
+    return vqmovn_high_s32(vqmovn_s32(vld1q_s32(from)), vld1q_s32(from + 4));
+}
+
+static inline int16x8_t neon_held(int32_t x)
+{
+    return vqmovn_high_s32(vqmovn_s32(vdupq_n_s32(x)), vdupq_n_s32(x));
+}
+
+uint32_t lm_k_stand_out(const int32_t *level_db_q8, int32_t least_db_q8, int32_t above_db_q8)
+{
+    const uint8x16_t bit = {1, 2, 4, 8, 16, 32, 64, 128, 1, 2, 4, 8, 16, 32, 64, 128};
+    const int16x8_t least = neon_held(least_db_q8), above = neon_held(above_db_q8);
+    int16x8_t level[3];
+    uint8x16_t does[2];
+    for (size_t n = 0; n < 3; n++) {
+        level[n] = neon_narrow_8(level_db_q8 - LM_K_BESIDE + 8 * n);
+    }
+    for (size_t n = 0; n < 2; n++) {
+        const int16x8_t cell = vextq_s16(level[n], level[n + 1], LM_K_BESIDE);
+        const int16x8_t most = vqsubq_s16(cell, above);
+        does[n] = vreinterpretq_u8_u16(
+            vandq_u16(vcgeq_s16(cell, least),
+                      vandq_u16(vcgeq_s16(most, level[n]), vcgeq_s16(most, level[n + 1]))));
+    }
+    const uint8x16_t mask = vandq_u8(vuzp1q_u8(does[0], does[1]), bit);
+    return vaddv_u8(vget_low_u8(mask)) | (uint32_t)vaddv_u8(vget_high_u8(mask)) << 8;
 }
 
 void lm_k_side_lobes(const int16_t *side_db_q8, int32_t point_db_q8, int32_t *level_db_q8)

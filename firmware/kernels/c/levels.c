@@ -1,3 +1,5 @@
+#include <stdbool.h>
+
 #include "fx/log.h"
 #include "fx/sat.h"
 #include "lm/kernels_radar.h"
@@ -21,7 +23,7 @@ void lm_k_levels_mean(const int32_t *restrict sum_db_q8, int32_t less_db_q8, int
 
 void lm_k_highest(const int32_t *level_db_q8, int32_t *restrict highest_db_q8, uint32_t cells)
 {
-    const uint32_t blocks = (cells + 15) / 16 * (16 / LM_K_HIGHEST_CELLS);
+    const uint32_t blocks = (cells + LM_K_HIGHEST_CELLS - 1) / LM_K_HIGHEST_CELLS;
     for (uint32_t n = 0; n < blocks; n++, level_db_q8 += LM_K_HIGHEST_CELLS) {
         int32_t highest = level_db_q8[0];
         for (uint32_t i = 1; i < LM_K_HIGHEST_CELLS; i++) {
@@ -29,6 +31,25 @@ void lm_k_highest(const int32_t *level_db_q8, int32_t *restrict highest_db_q8, u
         }
         highest_db_q8[n] = highest;
     }
+}
+
+static inline int32_t held(int32_t x)
+{
+    return fx_clamp_i32(x, INT16_MIN, INT16_MAX);
+}
+
+uint32_t lm_k_stand_out(const int32_t *level_db_q8, int32_t least_db_q8, int32_t above_db_q8)
+{
+    uint32_t mask = 0;
+    for (uint32_t k = 0; k < LM_K_HIGHEST_CELLS; k++) {
+        const int32_t *const cell = level_db_q8 + k;
+        const int32_t most_db_q8 = held(held(*cell) - held(above_db_q8));
+        const bool does = held(*cell) >= held(least_db_q8) &&
+                          held(cell[-LM_K_BESIDE]) <= most_db_q8 &&
+                          held(cell[LM_K_BESIDE]) <= most_db_q8;
+        mask |= (uint32_t)does << k;
+    }
+    return mask;
 }
 
 void lm_k_side_lobes(const int16_t *restrict side_db_q8, int32_t point_db_q8,

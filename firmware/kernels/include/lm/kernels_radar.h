@@ -28,11 +28,19 @@ void lm_k_levels_add(int32_t *sum_db_q8, const int32_t *level_db_q8, uint32_t ce
 void lm_k_levels_mean(const int32_t *sum_db_q8, int32_t less_db_q8, int32_t least_db_q8,
                       int32_t *level_db_q8, uint32_t cells);
 
-enum { LM_K_HIGHEST_CELLS = 8 };
+enum { LM_K_HIGHEST_CELLS = 16 };
 
-/* The highest of each LM_K_HIGHEST_CELLS levels, in whole groups of 16. Behind the last cell there
- * may be anything: it counts too. Cost: 1 a cell. */
+/* The highest of each LM_K_HIGHEST_CELLS levels. Behind the last cell there may be anything: it
+ * counts too. Cost: 1 a cell. */
 void lm_k_highest(const int32_t *level_db_q8, int32_t *highest_db_q8, uint32_t cells);
+
+enum { LM_K_BESIDE = 4 };
+
+/* Those of LM_K_HIGHEST_CELLS cells that are at least `least_db_q8` high, and `above_db_q8` or more
+ * above the cells LM_K_BESIDE before and behind them: bit k is cell k. As many cells before the
+ * first and behind the last are read, too. All numbers count as the nearest that 16 bits hold, and
+ * so do differences. Cost: 2 a cell. */
+uint32_t lm_k_stand_out(const int32_t *level_db_q8, int32_t least_db_q8, int32_t above_db_q8);
 
 enum { LM_K_LOBES = 16, LM_K_LOBES_BELOW_DB_Q8 = 25 * 256 };
 
