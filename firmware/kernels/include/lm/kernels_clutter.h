@@ -173,7 +173,7 @@ struct lm_k_layover {
  *   are 70 dB below the least power that counts.
  * - Each sum's worst error is 0.018 dB.
  *
- * Cost: @ a cell where nothing moves, @ over hills, @ in towns. A group is a pass for each two
+ * Cost: 7 a cell where nothing moves, 11 over hills and in towns. A group is a pass for each two
  * cells that its places are apart. */
 void lm_k_layover(const struct lm_k_layover *line, int32_t *laid_db_q8);
 
