@@ -228,9 +228,9 @@ static inline struct wedge paint_rows(struct wedge w, int32_t rows, struct asked
 }
 
 /* Mark the rows of a wedge in a plane's damage, band by band. Its edges are straight, so they are
- * farthest out in the first or the last row of a band, of which the first band and the last may have
- * fewer: what they mark beside the wedge is a pixel or two. `left` and `right` are at the first
- * row. */
+ * farthest out in the first or the last row of a band, of which the first band and the last may
+ * have fewer: what they mark beside the wedge is a pixel or two. `left` and `right` are at the
+ * first row. */
 static void mark_wedge(const struct lm_plane *plane, const struct lm_ppi *ppi,
                        const struct edge *left, const struct edge *right, const struct rows *rows,
                        const struct columns *columns)

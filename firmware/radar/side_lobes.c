@@ -127,7 +127,8 @@ static __attribute__((noinline)) void consider(struct search *of, uint32_t cell)
     }
 }
 
-/* Cells of a group that may count, bit by bit: all that are high enough where the line ends near. */
+/* Cells of a group that may count, bit by bit: all that are high enough where the line ends near.
+ */
 static inline uint32_t cells_of(const struct search *of, uint32_t first)
 {
     const uint32_t end = fx_min_u32(first + LM_K_HIGHEST_CELLS, of->cells);
@@ -159,7 +160,8 @@ enum {
 _Static_assert(GROUPS <= 1 << GROUPS_LOG2, "a key holds the number of a group");
 
 /* Groups are searched by their highest cells, the highest first: soon few count. A key is that
- * level, and in its lower bits what makes keys differ: the first of equal groups has the largest. */
+ * level, and in its lower bits what makes keys differ: the first of equal groups has the largest.
+ */
 static void search_groups(struct search *of)
 {
     int32_t key[GROUPS];

@@ -501,8 +501,8 @@ static void draw_peaks(struct input *in)
 static void run_stand_out(const struct input *in, struct output *out, bool is_plain)
 {
     for (uint32_t k = 0; k < in->cells; k++) {
-        out->line[0][k] = TWIN(lm_k_stand_out)(in->level_db_q8 + LM_K_BESIDE + k, in->number[0],
-                                               in->number[1]);
+        out->line[0][k] =
+            TWIN(lm_k_stand_out)(in->level_db_q8 + LM_K_BESIDE + k, in->number[0], in->number[1]);
     }
 }
 
