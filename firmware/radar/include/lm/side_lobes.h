@@ -60,8 +60,8 @@ void lm_side_lobes_clear(struct lm_side_lobes *s, const struct lm_side_lobe_conf
 /* Find the strong cells of line `line`, which is the one after the last. A cell is strong if its
  * level is the largest within LM_RESPONSE_REACH / 2 cells along, and stands as high over a shadow,
  * of `shadow_db_q8`, and over the cells at both ends of these as the table asks. `seed` chooses
- * where in its cell a point lies. Cost: 1 instruction a cell, 120 for each group of 16 that may hold
- * one of the strongest, and 50 for each cell in it that stands out; of a town, 4 a cell. */
+ * where in its cell a point lies. Cost: 1 instruction a cell, 120 for each group of 16 that may
+ * hold one of the strongest, and 50 for each cell in it that stands out; of a town, 4 a cell. */
 void lm_side_lobes_find(struct lm_side_lobes *s, uint32_t line, const int32_t *level_db_q8,
                         uint32_t cells, int32_t shadow_db_q8, uint32_t seed);
 
