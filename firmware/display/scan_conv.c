@@ -433,7 +433,8 @@ struct strip {
     uint16_t grey[ROWS_AT_ONCE];        /* of the second line */
     uint16_t column_px[ROWS_AT_ONCE];   /* of the next pixel */
     uint16_t share_q7[4][ROWS_AT_ONCE]; /* of the second line in each pixel; all of it behind it */
-    uint32_t pixels[ROWS_AT_ONCE];      /* greys of four, or of two: the left one is lowest */
+    /* Greys, two pixels in a number: the left one is the lower byte. */
+    uint16_t pair[ROWS_AT_ONCE][2];
 };
 
 /* Grey between two. A difference is below 2^8, times 2^7: 16 bits hold it. */
@@ -485,19 +486,17 @@ static inline void set_shares(struct lm_patch_painter *p, uint32_t first, uint32
     }
 }
 
-/* Greys of the next pixels of each row, as one number. */
-static inline void set_pixels(struct lm_patch_painter *p, uint32_t first, uint32_t most_px,
-                              struct strip *s)
+/* Greys of the next pixels of each row, which then lie side by side. */
+static inline void set_pairs(struct lm_patch_painter *p, uint32_t first, uint32_t most_px,
+                             struct strip *s)
 {
     for (uint32_t i = 0; i < ROWS_AT_ONCE; i++) {
         const uint16_t before = p->grey[first + i], here = s->grey[i];
-        uint16_t pair[2] = {0, 0};
         for (uint32_t k = 0; k < most_px; k += 2) {
             const uint16_t left = grey_between(before, here, s->share_q7[k][i]);
             const uint16_t right = grey_between(before, here, s->share_q7[k + 1][i]);
-            pair[k / 2] = (uint16_t)(left | right << 8);
+            s->pair[i][k / 2] = (uint16_t)(left | right << 8);
         }
-        s->pixels[i] = pair[0] | (uint32_t)pair[1] << 16;
     }
 }
 
@@ -518,15 +517,15 @@ static inline void store(struct lm_patch_painter *p, uint32_t first, uint32_t ro
     const uint32_t right = (uint32_t)p->square.left_px + p->square.width_px;
     if (are_whole(s, rows, most_px, right)) {
         const uint16_t *column_px = s->column_px;
-        const uint32_t *pixels = s->pixels;
-        for (const uint32_t *const end = pixels + rows; pixels != end; row += up) {
+        const uint16_t(*pair)[2] = s->pair;
+        for (const uint16_t(*const end)[2] = pair + rows; pair != end; pair++, row += up) {
             if (most_px > 2) {
-                fx_store_u32(row + *column_px++, *pixels++);
+                fx_store_u32(row + *column_px++, fx_load_u32(pair));
             } else {
-                fx_store_u16(row + *column_px++, *pixels++);
+                fx_store_u16(row + *column_px++, (*pair)[0]);
             }
             /* Keep two pointers: the compiler would make both from one number in each turn. */
-            __asm__("" : "+r"(column_px), "+r"(pixels));
+            __asm__("" : "+r"(column_px), "+r"(pair));
         }
         return;
     }
@@ -534,7 +533,7 @@ static inline void store(struct lm_patch_painter *p, uint32_t first, uint32_t ro
         uint16_t *const end = &p->column_px[first + i];
         *end = (uint16_t)fx_min_u32(*end, right);
         for (uint32_t k = 0, x = s->column_px[i]; x < *end; k++, x++) {
-            row[x] = (uint8_t)(s->pixels[i] >> 8 * k);
+            row[x] = (uint8_t)(s->pair[i][k / 2] >> k % 2 * 8);
         }
     }
 }
@@ -545,7 +544,7 @@ static inline void paint_strip(struct lm_patch_painter *p, uint32_t first, uint3
                                uint32_t most_px, struct strip *s, uint8_t *row, ptrdiff_t up)
 {
     set_shares(p, first, most_px, s);
-    set_pixels(p, first, most_px, s);
+    set_pairs(p, first, most_px, s);
     store(p, first, rows, most_px, s, row, up);
 }
 
