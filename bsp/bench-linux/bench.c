@@ -51,9 +51,8 @@ static void report_refusal(struct bench *b, const struct lm_radar *radar, int st
                  (unsigned)fault.index, fault.needs ? fault.needs : "inside its range");
     } else {
         snprintf(b->error, sizeof b->error, "%s",
-                 status == LM_ERR_RANGE
-                     ? "the glass must have 256..1024 pixels each way"
-                     : "out of memory: the coarsest level of the database has too many tiles");
+                 status == LM_ERR_RANGE ? "the glass must have 256..1024 pixels each way"
+                                        : "the memory for tiles is too small");
     }
 }
 

@@ -56,7 +56,7 @@ static void start_with_flash(struct panel *p, const struct lm_flash *flash)
 {
     recording_begin(&p->recording, &p->board, panel_now_us(p));
     if (lm_unit_init(p->unit, &p->board) != LM_OK) {
-        report(REPORT_ERROR, "%s: its coarsest level has too many tiles; raise the option tiles",
+        report(REPORT_ERROR, "%s: the memory for tiles is too small; raise the option tiles",
                p->storage.path);
         p->board.flash = &drv_no_flash;
         recording_begin(&p->recording, &p->board, panel_now_us(p));

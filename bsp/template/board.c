@@ -10,7 +10,7 @@ int main(void);
 enum {
     WIDTH_PX = 768,
     HEIGHT_PX = 768,
-    TILES = 256,   /* at least the coarsest level of the database and 16 more */
+    TILES = 256,   /* docs/PORTING.md says what serves which mode */
     STEP_US = 2000 /* as often as a line is due at the fastest scale */
 };
 

@@ -14,7 +14,7 @@ static void report_refusal(struct zcu102 *z, int status)
         zcu102_print(&z->console, fault.needs ? fault.needs : "outside its range");
         zcu102_print(&z->console, "\n");
     } else {
-        zcu102_print(&z->console, "the database's coarsest level does not fit the tile memory\n");
+        zcu102_print(&z->console, "the tile memory is too small\n");
     }
 }
 

@@ -283,7 +283,7 @@ int lm_db_open(struct lm_db *db, const struct lm_flash *flash, uint32_t poll_lim
     if (fx_crc32c(0, &h, sizeof h - sizeof h.crc) != h.crc) {
         return LM_ERR_CORRUPT;
     }
-    if (h.top != LM_IMAGE_TOP_RESIDENT || h.sensor >= LM_SENSORS) {
+    if (h.top != LM_IMAGE_TOP_PLAIN || h.sensor >= LM_SENSORS) {
         return LM_ERR_VERSION;
     }
     if (!header_is_sound(&h, flash->size_bytes)) {

@@ -2,8 +2,15 @@
 
 #include "fx/mem.h"
 
-/* Newest requests that are searched for a duplicate. */
-enum { DUPLICATES_SEARCHED = 32 };
+enum {
+    DUPLICATES_SEARCHED = 32, /* newest requests that are searched for a duplicate */
+    SLOTS_LEAST = 20          /* the nine that lm_tile_cache_keep_around keeps, and as many more */
+};
+
+static uint8_t coarsest_lod(const struct lm_tile_cache *c)
+{
+    return (uint8_t)(c->db->lod_count - 1);
+}
 
 static uint16_t *head_of(struct lm_tile_cache *c, uint8_t lod, uint32_t row, uint32_t column)
 {
@@ -34,12 +41,12 @@ static void unlink_slot(struct lm_tile_cache *c, uint16_t victim)
     *link = s->next;
 }
 
-/* A free slot, or the one that was used longest ago, unlinked from its chain. The coarsest LOD and
- * the slot being read stay. lm_tile_cache_init leaves at least 16 slots that are neither, so
- * LM_SLOT_NONE does not happen. If it did, nothing would be written. */
+/* A free slot, or the one that was used longest ago, unlinked from its chain. A coarsest LOD that
+ * is resident whole and the slot being read stay. lm_tile_cache_init leaves more slots that are
+ * neither, so LM_SLOT_NONE does not happen. If it did, nothing would be written. */
 static uint16_t take_slot(struct lm_tile_cache *c)
 {
-    const uint8_t coarsest = (uint8_t)(c->db->lod_count - 1);
+    const uint8_t pinned = c->is_top_resident ? coarsest_lod(c) : LM_DB_LODS_MAX;
     uint16_t best = LM_SLOT_NONE;
     uint32_t best_age = 0;
     for (uint32_t i = 0; i < c->slot_count; i++) {
@@ -48,7 +55,7 @@ static uint16_t take_slot(struct lm_tile_cache *c)
             return (uint16_t)i;
         }
         const uint32_t age = c->clock - s->last_use;
-        const bool is_pinned = s->state == LM_SLOT_RESIDENT && s->lod == coarsest;
+        const bool is_pinned = s->state == LM_SLOT_RESIDENT && s->lod == pinned;
         if (!is_pinned && s->state != LM_SLOT_READING && (best == LM_SLOT_NONE || age > best_age)) {
             best = (uint16_t)i;
             best_age = age;
@@ -375,32 +382,54 @@ bool lm_tile_cache_is_idle(const struct lm_tile_cache *c)
     return !is_reading(c) && !c->request && c->wanted_head == c->wanted_tail;
 }
 
-/* Read every tile of the coarsest LOD and wait for each. This happens once, before the first
- * picture. */
-static int read_coarsest(struct lm_tile_cache *c, uint32_t poll_limit)
+void lm_tile_cache_keep_around(struct lm_tile_cache *c, struct lm_position place)
 {
-    const uint8_t lod = (uint8_t)(c->db->lod_count - 1);
-    uint32_t total = 0;
-    for (uint32_t b = 0; b < c->db->band_count; b++) {
-        const struct lm_band *band = &c->db->bands[b];
-        if (band->lod != lod) {
-            continue;
-        }
-        const uint64_t tiles = (uint64_t)band->rows * band->columns;
-        if (total + tiles + 16 > c->slot_count) {
-            return LM_ERR_NO_MEMORY;
-        }
-        total += (uint32_t)tiles;
-        const uint32_t round = 1u << (32 - LM_TILE_CELLS_LOG2 - c->db->shift0 - lod - band->zone);
-        for (uint32_t t = 0; t < tiles; t++) {
-            const uint32_t column = (band->column0 + t % band->columns) & (round - 1);
-            lm_tile_cache_want(c, lod, band->row0 + t / band->columns, column);
-            for (uint32_t polls = 0; polls < poll_limit && !lm_tile_cache_is_idle(c); polls++) {
-                lm_tile_cache_service(c, 0, 1);
-            }
+    const uint8_t lod = coarsest_lod(c);
+    const uint32_t side_log2 = (uint32_t)c->db->shift0 + lod + LM_TILE_CELLS_LOG2; /* <= 26 */
+    const uint32_t rows = 1u << (31 - side_log2);
+    if (c->is_top_resident) {
+        return;
+    }
+    /* South of row 0 the row wraps, and is none of the rows either. */
+    for (uint32_t i = 0; i < 9; i++) {
+        const uint32_t row = ((place.latitude + FX_BAM_90) >> side_log2) + i / 3 - 1;
+        if (row < rows) {
+            const uint32_t east_log2 = side_log2 + lm_db_zone((row << side_log2) - FX_BAM_90);
+            const uint32_t column = (place.longitude >> east_log2) + i % 3 - 1;
+            lm_tile_cache_want(c, lod, row, column & UINT32_MAX >> east_log2);
         }
     }
-    return LM_OK;
+}
+
+/* Read every tile of a band of the coarsest LOD and wait for each. */
+static void read_band(struct lm_tile_cache *c, const struct lm_band *band, uint32_t poll_limit)
+{
+    const uint32_t round = 1u << (32 - LM_TILE_CELLS_LOG2 - c->db->shift0 - band->lod - band->zone);
+    for (uint32_t t = 0; t < band->rows * band->columns; t++) {
+        const uint32_t column = (band->column0 + t % band->columns) & (round - 1);
+        lm_tile_cache_want(c, band->lod, band->row0 + t / band->columns, column);
+        for (uint32_t polls = 0; polls < poll_limit && !lm_tile_cache_is_idle(c); polls++) {
+            lm_tile_cache_service(c, 0, 1);
+        }
+    }
+}
+
+/* Read the coarsest LOD, if it leaves half of the pool to the others. This happens once, before the
+ * first picture. */
+static void read_coarsest(struct lm_tile_cache *c, uint32_t poll_limit)
+{
+    const uint8_t lod = coarsest_lod(c);
+    uint64_t total = 0;
+    for (uint32_t b = 0; b < c->db->band_count; b++) {
+        const struct lm_band *band = &c->db->bands[b];
+        total += band->lod == lod ? (uint64_t)band->rows * band->columns : 0;
+    }
+    c->is_top_resident = total <= c->slot_count / 2;
+    for (uint32_t b = 0; b < c->db->band_count && c->is_top_resident; b++) {
+        if (c->db->bands[b].lod == lod) {
+            read_band(c, &c->db->bands[b], poll_limit);
+        }
+    }
 }
 
 int lm_tile_cache_init(struct lm_tile_cache *c, const struct lm_db *db, void *pool,
@@ -420,5 +449,9 @@ int lm_tile_cache_init(struct lm_tile_cache *c, const struct lm_db *db, void *po
             c->heads[lod][i] = LM_SLOT_NONE;
         }
     }
-    return read_coarsest(c, poll_limit);
+    if (c->slot_count < SLOTS_LEAST) {
+        return LM_ERR_NO_MEMORY;
+    }
+    read_coarsest(c, poll_limit);
+    return LM_OK;
 }

@@ -7,6 +7,7 @@
 #include "fx/sat.h"
 #include "lm/radar_check.h"
 #include "lm/version.h"
+#include "ownship.h"
 #include "pacing.h"
 #include "present.h"
 #include "report.h"
@@ -202,7 +203,9 @@ void lm_unit_step(struct lm_unit *u, uint64_t now_us)
     }
     lm_tracking_step(u, now_us);
     lm_follow_cursor(u, now_us);
-    lm_unit_map_service(&u->map, now_us);
+    const struct lm_position here = lm_ownship_position(&u->ownship);
+    const bool is_here = u->ownship.position_quality != LM_NAV_DEAD;
+    lm_unit_map_service(&u->map, is_here ? &here : NULL, now_us);
     const uint32_t lines_left = draw_lines(u, now_us);
     lm_send_reports(u, now_us);
     if (now_us >= u->next_frame_us) {

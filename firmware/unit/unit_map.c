@@ -118,9 +118,12 @@ struct lm_text lm_unit_map_refusal(const struct lm_unit_map *m)
     return t;
 }
 
-void lm_unit_map_service(struct lm_unit_map *m, uint64_t now_us)
+void lm_unit_map_service(struct lm_unit_map *m, const struct lm_position *aircraft, uint64_t now_us)
 {
     if (m->is_usable) {
+        if (aircraft) {
+            lm_tile_cache_keep_around(&m->tiles, *aircraft);
+        }
         lm_chips_service(&m->chips, &m->tiles);
         lm_tile_cache_service(&m->tiles, now_us, TILE_READS_A_STEP);
     }

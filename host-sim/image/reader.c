@@ -114,11 +114,11 @@ static int check_header(const struct image *image, struct image_findings *f)
         !db_is_zero(h->reserved1, sizeof h->reserved1)) {
         image_find(f, 60, "unused bytes of the header are not zero");
     }
-    if (h->top != LM_IMAGE_TOP_RESIDENT) {
-        image_find(f, offsetof(struct lm_image_header, top),
-                   "its coarsest level is not to be resident whole (top %u): no program here can "
-                   "read it",
-                   h->top);
+    if (h->top != LM_IMAGE_TOP_PLAIN) {
+        image_find(
+            f, offsetof(struct lm_image_header, top),
+            "its coarsest level is stored in another way (top %u): no program here can read it",
+            h->top);
         return -1;
     }
     if (h->sensor >= LM_SENSORS) {

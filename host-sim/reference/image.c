@@ -79,7 +79,7 @@ static int read_header(struct ref_db *db, const char *name)
         return hs_error(name, rebuild, "the header's checksum does not hold");
     }
     if (h[TOP_AT] != 0) {
-        return hs_error(name, "use a newer program", "its coarsest level is not resident whole");
+        return hs_error(name, "use a newer program", "its coarsest level is stored in another way");
     }
     db->shift0 = h[24];
     db->level_count = h[25];

@@ -55,6 +55,8 @@ static void use(const struct lm_db *db, struct fuzz_supply *s)
     }
     if (lm_tile_cache_init(cache, db, pool, SLOTS * sizeof(struct lm_tile), POLLS) == LM_OK) {
         look_at_bands(cache);
+        lm_tile_cache_keep_around(cache, there);
+        lm_tile_cache_service(cache, 0, POLLS);
         for (uint32_t cell_mm = 500; cell_mm < 100000000; cell_mm *= 40) {
             sample(cache, line, centre, cell_mm);
             sample(cache, line, there, cell_mm);

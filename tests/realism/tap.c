@@ -87,7 +87,7 @@ static bool is_read(const struct tap *t)
 static void read_tiles(struct tap *t)
 {
     for (int i = 0; i < POLLS_MAX && !is_read(t); i++) {
-        lm_unit_map_service(&t->map, 0);
+        lm_unit_map_service(&t->map, NULL, 0);
     }
 }
 

@@ -48,9 +48,9 @@ enum {
     LM_DB_VERSION = 3,
     LM_DB_HEADER_BYTES = 1024,
     LM_DB_LODS_MAX = 16,
-    LM_DB_BANDS_MAX = 64,
-    LM_DB_SHIFT_MIN = 4,  /* a cell of 0.15 m */
-    LM_DB_SHIFT_MAX = 20, /* a cell of 9.8 km */
+    LM_DB_BANDS_MAX = 128, /* seven for each LOD that goes round the Earth */
+    LM_DB_SHIFT_MIN = 4,   /* a cell of 0.15 m */
+    LM_DB_SHIFT_MAX = 20,  /* a cell of 9.8 km */
     LM_DB_SIXTEENTH_LOG2 =
         26, /* 1/16 of a quarter turn, BAM: borders of zones are multiples of it */
     LM_DB_CLASSES = 16,

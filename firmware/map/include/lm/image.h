@@ -37,7 +37,7 @@ enum {
     LM_IMAGE_SECTIONS_MAX = 32,
     LM_IMAGE_SECTION_ALIGNMENT = 64, /* bytes */
     LM_IMAGE_TITLE_BYTES = 32,
-    LM_IMAGE_TOP_RESIDENT = 0, /* the coarsest LOD is resident whole */
+    LM_IMAGE_TOP_PLAIN = 0, /* the coarsest LOD is found like every other */
 };
 
 /* Place of a section. */
@@ -57,7 +57,7 @@ struct lm_image_header {
     int32_t mean_elevation_m_q6, geoid_m_q6;          /* as in struct lm_db */
     uint32_t centre_latitude, centre_longitude;       /* BAM */
     uint32_t section_count;                           /* 0..LM_IMAGE_SECTIONS_MAX */
-    uint8_t top;                                      /* LM_IMAGE_TOP_RESIDENT */
+    uint8_t top;                                      /* LM_IMAGE_TOP_PLAIN */
     uint8_t sensor;                                   /* enum lm_sensor: of the reflectivity */
     uint8_t reserved0[2];
     struct lm_image_section sections[LM_IMAGE_SECTIONS_MAX];

@@ -2,8 +2,11 @@
  *
  * A look-up never waits. It answers at once from a resident tile, and a missing tile is read in the
  * background, one record at a time. For a tile that is late, lost or corrupt the nearest resident
- * ancestor answers, and the substitution is counted. Tiles of the coarsest LOD are read at the
- * start and never evicted, so that an ancestor is resident wherever the image has a map.
+ * ancestor answers, and the substitution is counted.
+ *
+ * Tiles of the coarsest LOD, the top, are read at the start and never evicted, so that an ancestor
+ * is resident wherever the image has a map. A top that needs more than half of the pool, that of
+ * the whole Earth, is not resident whole: lm_tile_cache_keep_around keeps nine tiles of it.
  *
  * States of a slot (enum lm_slot_state):
  *
@@ -18,7 +21,7 @@
  *                          +-----------------------------------------+
  *
  * If no slot is free, the one used longest ago gets the next tile. That may be RESIDENT, ABSENT or
- * BAD, but not READING, and not a resident tile of the coarsest LOD.
+ * BAD, but not READING, and not a tile of a top that is resident whole.
  *
  * Flow of a request:
  *
@@ -101,6 +104,7 @@ struct lm_tile_cache {
     const struct lm_db *db; /* borrowed as long as the cache is in use */
     struct lm_tile *pool;   /* borrowed as long, too: one record a slot */
     uint32_t slot_count;    /* of the pool; at most LM_TILE_SLOTS_MAX */
+    bool is_top_resident;   /* the coarsest LOD is, whole */
     uint32_t clock;         /* look-ups so far */
     uint64_t now_us;        /* of the last service */
 
@@ -137,13 +141,20 @@ struct lm_tile_cache {
 };
 
 /* Start a cache with a pool of `pool_bytes` at `pool`, 8-byte aligned, and read the coarsest LOD
- * into it. For start-up only: it waits for the flash, at most `poll_limit` steps a tile. The cache
- * keeps `db` and `pool`. At most LM_TILE_SLOTS_MAX tiles of the pool are used.
+ * into it, if that fits half of it. For start-up only: it waits for the flash, at most `poll_limit`
+ * steps a tile. The cache keeps `db` and `pool`. At most LM_TILE_SLOTS_MAX tiles of the pool are
+ * used.
  *
- * Returns LM_OK, or LM_ERR_NO_MEMORY if the pool cannot hold the coarsest LOD and 16 more tiles;
- * the cache is then not usable. A tile of the coarsest LOD that fails is counted, not fatal. */
+ * Returns LM_OK, or LM_ERR_NO_MEMORY if the pool holds fewer than 20 tiles; the cache is then not
+ * usable. A tile of the coarsest LOD that fails is counted, not fatal. */
 int lm_tile_cache_init(struct lm_tile_cache *c, const struct lm_db *db, void *pool,
                        size_t pool_bytes, uint32_t poll_limit);
+
+/* Of a coarsest LOD that is not resident whole, request the nine tiles around a place and mark them
+ * as used: whatever is late within some hundred kilometres of it, one of them answers. Call in
+ * every step, with the aircraft's position. Does nothing otherwise. Cost: nine look-ups, or none.
+ */
+void lm_tile_cache_keep_around(struct lm_tile_cache *c, struct lm_position place);
 
 /* Look up a tile. Returns
  * - the tile, if it is resident,

@@ -202,7 +202,7 @@ struct lm_unit {
  * - LM_ERR_TABLE: the board's radar table breaks its contract; lm_radar_check (lm/radar_check.h)
  *   names the field, for the board to report;
  * - LM_ERR_RANGE: the display has less than 256 or more than 1024 pixels either way;
- * - LM_ERR_NO_MEMORY: the tile pool is too small for the image's coarsest LOD and 16 tiles. */
+ * - LM_ERR_NO_MEMORY: the tile pool has room for fewer than 20 tiles. */
 int lm_unit_init(struct lm_unit *u, const struct lm_board *board);
 
 /* The present settings, for a board that keeps them for the next start, or for another display. */

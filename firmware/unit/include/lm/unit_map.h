@@ -59,16 +59,17 @@ struct lm_unit_map_lent {
  *   radar table is the one to use and fails lm_radar_unpack, if its bus table is the one to use and
  *   fails lm_bus_unpack, or if its reflectivity is of another band than the radar in use
  *   (LM_ERR_SENSOR);
- * - LM_ERR_NO_MEMORY: the pool is too small for the coarsest LOD and 16 tiles; *m must not be
- *   used. */
+ * - LM_ERR_NO_MEMORY: the pool is too small (lm_tile_cache_init); *m must not be used. */
 int lm_unit_map_open(struct lm_unit_map *m, const struct lm_unit_map_lent *lent);
 
 /* Why the image is refused although it is whole, in words: "IMAGE KU  RADAR X", "OTHER VERSION".
  * Empty if it is not refused, or damaged. */
 struct lm_text lm_unit_map_refusal(const struct lm_unit_map *m);
 
-/* Finish and start reads of tiles and chips. Call in every step. Never waits. */
-void lm_unit_map_service(struct lm_unit_map *m, uint64_t now_us);
+/* Finish and start reads of tiles and chips. Call in every step. `aircraft` is where the aircraft
+ * is, or NULL while that is not known. Never waits. */
+void lm_unit_map_service(struct lm_unit_map *m, const struct lm_position *aircraft,
+                         uint64_t now_us);
 
 /* Number of tiles and chips that were read with a wrong CRC; only grows. */
 uint32_t lm_unit_map_corrupt_records(const struct lm_unit_map *m);

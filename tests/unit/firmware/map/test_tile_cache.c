@@ -3,6 +3,7 @@
 #include "lm/tile_cache.h"
 
 #include "check.h"
+#include "hs/angle.h"
 #include "memory_flash.h"
 #include "tiny_image.h"
 
@@ -317,13 +318,97 @@ TEST(off_the_map_there_is_nothing)
     free_fixture(f);
 }
 
-TEST(a_pool_too_small_for_the_coarsest_level_is_refused)
+TEST(a_pool_of_a_few_tiles_is_refused)
 {
     struct fixture *f = make_fixture();
     struct lm_tile_cache *cache = calloc(1, sizeof *cache);
     assert_int_equal(lm_tile_cache_init(cache, &f->db, f->pool, 16 * sizeof(struct lm_tile), POLLS),
                      LM_ERR_NO_MEMORY);
     free(cache);
+    free_fixture(f);
+}
+
+/* A map of 64 tiles about a place, of one LOD: more than half of the pool. */
+static struct fixture *make_wide_fixture(double latitude_deg, double longitude_deg)
+{
+    struct fixture *f = calloc(1, sizeof *f);
+    struct tiny_spec spec = tiny_spec_at(latitude_deg, longitude_deg);
+    spec.cell = soil;
+    spec.rows = spec.columns = SIDE;
+    spec.level_count = 1;
+    assert_int_equal(tiny_image_build(&f->image, &spec), 0);
+    memory_flash_open(&f->flash, f->image.bytes, f->image.size);
+    assert_int_equal(open_cache(f), LM_OK);
+    return f;
+}
+
+/* Is the tile resident that holds the place so many tiles of shift 9 north and east of another, as
+ * wide as they are there? */
+static bool has_beside(const struct fixture *f, struct lm_position from, int north, int east)
+{
+    const fx_bam_t latitude = from.latitude + ((uint32_t)north << 15);
+    const uint32_t across = 15 + lm_db_zone(latitude);
+    const fx_bam_t longitude = from.longitude + ((uint32_t)east << across);
+    return lm_tile_cache_find(&f->cache, 0, (latitude + FX_BAM_90) >> 15, longitude >> across) !=
+           NULL;
+}
+
+TEST(of_a_top_that_is_too_large_the_nine_tiles_around_the_aircraft_are_kept)
+{
+    static const double places[][2] = {{46, 11},     {46, 180},      {46, -180},
+                                       {46, 0},      {0, 179.99999}, {61.875, 179.9999},
+                                       {-73.125, 0}, {84.375, 180}};
+    for (size_t i = 0; i < sizeof places / sizeof places[0]; i++) {
+        struct fixture *f = make_wide_fixture(places[i][0], places[i][1]);
+        const struct lm_position here = {hs_bam(places[i][0]), hs_bam(places[i][1])};
+        assert_false(f->cache.is_top_resident);
+        assert_int_equal(f->cache.count.tiles_read, 0);
+        lm_tile_cache_keep_around(&f->cache, here);
+        serve(f, 0);
+        assert_int_equal(f->cache.count.tiles_read, 9);
+        for (int n = 0; n < 9; n++) {
+            assert_true(has_beside(f, here, n / 3 - 1, n % 3 - 1));
+        }
+        assert_false(has_beside(f, here, 2, 0));
+        assert_false(has_beside(f, here, 0, -2));
+        free_fixture(f);
+    }
+}
+
+TEST(what_is_kept_around_the_aircraft_outlasts_what_is_looked_up_elsewhere)
+{
+    struct fixture *f = make_wide_fixture(46, 11);
+    const struct lm_position here = {hs_bam(46), hs_bam(11)};
+    for (uint32_t i = 0; i < 4 * SIDE * SIDE; i++) {
+        lm_tile_cache_keep_around(&f->cache, here);
+        get(f, i / SIDE % SIDE, i % SIDE);
+        serve(f, 0);
+        for (int n = 0; n < 9; n++) {
+            assert_true(has_beside(f, here, n / 3 - 1, n % 3 - 1));
+        }
+    }
+    assert_true(f->cache.count.evicted > 4 * SIDE);
+    free_fixture(f);
+}
+
+TEST(round_a_pole_there_are_fewer_tiles_to_keep)
+{
+    struct fixture *f = make_wide_fixture(89.99999, 11);
+    lm_tile_cache_keep_around(&f->cache, (struct lm_position){FX_BAM_90, hs_bam(11)});
+    lm_tile_cache_keep_around(&f->cache, (struct lm_position){0u - FX_BAM_90, hs_bam(11)});
+    serve(f, 0);
+    assert_true(f->cache.count.tiles_read <= 6);
+    assert_int_equal(f->cache.count.io_errors + f->cache.count.corrupt, 0);
+    free_fixture(f);
+}
+
+TEST(a_top_that_is_resident_whole_needs_no_keeping)
+{
+    struct fixture *f = make_fixture();
+    const uint32_t clock = f->cache.clock;
+    lm_tile_cache_keep_around(&f->cache, (struct lm_position){hs_bam(46), hs_bam(11)});
+    assert_true(f->cache.is_top_resident && lm_tile_cache_is_idle(&f->cache));
+    assert_int_equal(f->cache.clock, clock);
     free_fixture(f);
 }
 
