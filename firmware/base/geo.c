@@ -238,11 +238,13 @@ void lm_geo_inverse(struct lm_position from, struct lm_position to, uint32_t *di
     /* Flat-Earth law about the midpoint: north = M dlat, east = N cos(lat) dlon. The azimuth at
      * `from` is that at the midpoint less half the convergence of the meridians, dlon sin(lat). */
     struct lm_geo_origin middle;
-    /* Differences are clamped at 2^27 BAM = 11 degrees, beyond the 300 km of the contract, because
-     * more would overflow. */
-    const int32_t far = 1 << 27;
+    /* Differences are clamped at 11 degrees of latitude and 45 of longitude, beyond the 300 km of
+     * the contract up to 86 degrees of latitude. An arc is then below 2^31.7, and its product with
+     * a radius below 2^63. */
+    const int32_t far = 1 << 27, far_east = 1 << 29;
     const int32_t dlat = fx_clamp_i32((int32_t)(to.latitude - from.latitude), -far, far);
-    const int32_t dlon = fx_clamp_i32((int32_t)(to.longitude - from.longitude), -far, far);
+    const int32_t dlon =
+        fx_clamp_i32((int32_t)(to.longitude - from.longitude), -far_east, far_east);
     const struct lm_position half_way = {from.latitude + (uint32_t)(dlat / 2), from.longitude};
     lm_geo_set_origin(&middle, half_way);
     /* An arc is angle * 2 pi / 2^32 * radius. */

@@ -10,7 +10,7 @@ const char *lm_refusal_word(enum lm_refusal reason)
         [LM_REFUSED_NEAR] = "TOO NEAR", [LM_REFUSED_FAR] = "TOO FAR",
         [LM_REFUSED_HEIGHT] = "HEIGHT", [LM_REFUSED_SQUINT] = "SQUINT",
         [LM_REFUSED_GIMBAL] = "GIMBAL", [LM_REFUSED_DWELL] = "DWELL",
-        [LM_REFUSED_SWAP] = "NO SWAP",
+        [LM_REFUSED_SWAP] = "NO SWAP",  [LM_REFUSED_POLE] = "POLE",
     };
     return words[(unsigned)reason < LM_REFUSALS ? reason : LM_REFUSED_NOT];
 }

@@ -91,8 +91,8 @@ void lm_overlay_labels(const struct lm_glass *g, const struct lm_page *page)
 /* ---- words ---- */
 
 static const char flag_words[LM_FLAGS][9] = {
-    "NAV", "NAV FAIL", "DB FAIL", "TILE", "BUS",    "FZ",   "OFF MAP", "NO RAD",  "UNABLE",
-    "WX",  "BLW TERR", "MAG HDG", "EXC",  "SENDER", "MALF", "RESTART", "UNSIGNED"};
+    "NAV", "NAV FAIL", "DB FAIL", "TILE", "BUS",    "FZ",   "OFF MAP", "NO RAD",   "UNABLE",
+    "WX",  "BLW TERR", "MAG HDG", "EXC",  "SENDER", "MALF", "RESTART", "UNSIGNED", "POLE"};
 
 const char *lm_flag_word(uint32_t number)
 {

@@ -85,6 +85,9 @@ static enum lm_refusal judge_command(const struct lm_radar *radar, const struct 
     if (c->cell_mm < radar->sar.cell_min_mm || c->cell_mm > radar->sar.cell_max_mm) {
         return LM_REFUSED_CELL;
     }
+    if (lm_geo_is_polar(c->centre)) {
+        return LM_REFUSED_POLE;
+    }
     if (c->range_m > 250000) {
         return LM_REFUSED_FAR;
     }

@@ -43,6 +43,9 @@ static uint32_t nav_flags(const struct lm_unit *u)
     if (!lm_picture_needs_ownship(&u->picture)) {
         return 0;
     }
+    if (u->is_polar) {
+        return LM_FLAG_POLE;
+    }
     if (own->position_quality == LM_NAV_DEAD || own->height_quality == LM_NAV_DEAD ||
         own->heading_quality == LM_NAV_DEAD) {
         return LM_FLAG_NAV_DEAD;

@@ -8,7 +8,7 @@ enum {
     /* The picture stands, and the aircraft moves over it. */
     LM_FLAGS_STANDING = LM_FLAG_FROZEN | LM_FLAG_SILENT,
     /* The picture is removed. */
-    LM_FLAGS_REMOVING = LM_FLAG_DB | LM_FLAG_NAV_DEAD,
+    LM_FLAGS_REMOVING = LM_FLAG_DB | LM_FLAG_NAV_DEAD | LM_FLAG_POLE,
     /* No line is drawn. */
     LM_FLAGS_NO_LINES = LM_FLAGS_REMOVING | LM_FLAG_NAV_STALE | LM_FLAGS_STANDING
 };

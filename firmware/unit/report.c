@@ -12,7 +12,8 @@
 enum { RANGE_MOST_M = 400000 }; /* of lm_slant_of_ground_m_q8 */
 
 _Static_assert(LM_REFUSED_MAP == 5 && LM_REFUSED_DWELL == 13 && LM_REFUSED_SWAP == 14 &&
-                   LM_FORMAT_TEST == 4 && LM_FOV_DBS2 == 3 && LM_SECTOR_BEACON == 3,
+                   LM_REFUSED_POLE == 15 && LM_FORMAT_TEST == 4 && LM_FOV_DBS2 == 3 &&
+                   LM_SECTOR_BEACON == 3,
                "docs/bus.md tells others these numbers");
 
 static void tell(struct lm_report *r, enum lm_report_item item, uint32_t word)

@@ -157,6 +157,11 @@ static void take_bus(struct lm_unit *u, uint64_t now_us)
     }
     lm_canas_service_answer(&u->service, u->board->can, u->flags, now_us);
     lm_nav_at(&u->nav, now_us, &u->ownship);
+    u->is_polar = u->ownship.position_quality != LM_NAV_DEAD &&
+                  lm_geo_is_polar(lm_ownship_position(&u->ownship));
+    if (u->is_polar) {
+        u->ownship.position_quality = LM_NAV_DEAD; /* nothing is drawn from there */
+    }
     lm_exercise_at(&u->exercise, now_us);
     lm_malfunction_bus_at(&u->malfunctions, now_us);
 }

@@ -576,6 +576,7 @@ void script_report_refusal(const struct script *s, enum lm_refusal reason)
         [LM_REFUSED_GIMBAL] = "the patch is beyond the antenna's gimbal",
         [LM_REFUSED_DWELL] = "the dwell would be too long",
         [LM_REFUSED_SWAP] = "there is no other display to swap with",
+        [LM_REFUSED_POLE] = "the patch is too near to a pole",
     };
     char place[sizeof s->path + 32];
     snprintf(place, sizeof place, "%s line %d", s->path, s->line_taken);

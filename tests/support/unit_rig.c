@@ -27,7 +27,7 @@ static int receive(void *ctx, struct lm_can_frame *frame)
     const struct {
         uint32_t id;
         double value;
-    } items[] = {{1036, 46.0 - 0.05 + north / 111132.0 + b->jump_degrees},
+    } items[] = {{1036, b->latitude_deg - 0.05 + north / 111132.0 + b->jump_degrees},
                  {1037, b->longitude_deg},
                  {1038, b->height_m},
                  {320, b->height_m + 300},
@@ -76,10 +76,10 @@ static double hills(void *ctx, const struct tiny_place *p)
     return 100 + 50 * sin(p->east_m / 900);
 }
 
-struct rig *make_rig_at(double longitude_deg)
+struct rig *make_rig_at(double latitude_deg, double longitude_deg)
 {
     struct rig *r = calloc(1, sizeof *r);
-    struct tiny_spec spec = tiny_spec_at(46, longitude_deg);
+    struct tiny_spec spec = tiny_spec_at(latitude_deg, longitude_deg);
     spec.cell = scene;
     spec.elevation_m = hills;
     spec.shift0 = 11;
@@ -95,6 +95,7 @@ struct rig *make_rig_at(double longitude_deg)
                                              .tile_pool = r->pool,
                                              .tile_pool_bytes = sizeof r->pool};
     memory_board_open(&r->board, r->image.bytes, r->image.size, &parts);
+    r->bus.latitude_deg = latitude_deg;
     r->bus.longitude_deg = longitude_deg;
     r->bus.stop_us = UINT64_MAX;
     r->bus.speed_m_s = 150;
@@ -105,7 +106,7 @@ struct rig *make_rig_at(double longitude_deg)
 
 struct rig *make_rig(void)
 {
-    return make_rig_at(11);
+    return make_rig_at(46, 11);
 }
 
 struct rig *start_rig(void)

@@ -10,9 +10,9 @@
 
 enum { WIDTH = 480, HEIGHT = 480, STEP_US = 2000, POOL_TILES = 120, CONTROLS_MAX = 64 };
 
-/* A bus that flies north at 150 m/s from 45.95 N 11 E, until told to stop. */
+/* A bus that flies north at 150 m/s from 0.05 degrees south of a place, until told to stop. */
 struct fake_bus {
-    double longitude_deg;
+    double latitude_deg, longitude_deg; /* the place, 46 N 11 E at first */
     uint64_t now_us, sent_us, stop_us;
     int queue_next;
     int is_down;
@@ -41,7 +41,7 @@ struct rig {
 /* A rig whose unit is not started yet, one whose unit is, and one in good flight at 10 nm with a
  * picture. */
 struct rig *make_rig(void);
-struct rig *make_rig_at(double longitude_deg); /* the same country and flight elsewhere */
+struct rig *make_rig_at(double latitude_deg, double longitude_deg); /* the same elsewhere */
 struct rig *start_rig(void);
 struct rig *fly_rig(void);
 void free_rig(struct rig *r);

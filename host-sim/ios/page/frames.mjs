@@ -45,7 +45,7 @@ export const MALFUNCTIONS = [['no transmitter', '', 0, 0, 0], ['weak transmitter
 /* Words of the state word's bits (1500), as the glass shows them. `test_station` compares. */
 export const FLAG_WORDS = ['NAV', 'NAV FAIL', 'DB FAIL', 'TILE', 'BUS', 'FZ', 'OFF MAP', 'NO RAD', 'UNABLE', 'WX',
     'BLW TERR',
-    'MAG HDG', 'EXC', 'SENDER', 'MALF', 'RESTART', 'UNSIGNED'];
+    'MAG HDG', 'EXC', 'SENDER', 'MALF', 'RESTART', 'UNSIGNED', 'POLE'];
 export const MODES = ['GM', 'GMT', 'SEA', 'BCN'], FIELDS_OF_VIEW = ['NORM', 'EXP', 'DBS1', 'DBS2'];
 export const PAGES = ['radar', 'CNTL', 'DCLT', 'BIT', 'test pattern'];
 export const SWITCHES = ['', 'designate', 'drop', 'freeze', 'release'];

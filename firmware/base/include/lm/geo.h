@@ -19,13 +19,26 @@
 
 #include <stdint.h>
 
+#include <stdbool.h>
+
+#include "fx/sat.h"
 #include "fx/types.h"
+
+/* Maps are drawn up to this latitude, north and south. Beyond it the parabola of a line of 80
+ * nautical miles misses its geodesic by more than one of the line's 512 cells. */
+enum { LM_GEO_POLAR_DEG = 85 };
 
 /* A position: geodetic latitude and longitude. */
 struct lm_position {
     fx_bam_t latitude;  /* north positive; as int32_t within +-FX_BAM_90 */
     fx_bam_t longitude; /* east positive; wraps at the antimeridian */
 };
+
+/* True if the position is too near to a pole for a map. */
+static inline bool lm_geo_is_polar(struct lm_position position)
+{
+    return fx_abs_u32((int32_t)position.latitude) > FX_BAM_DEG(LM_GEO_POLAR_DEG);
+}
 
 /* Starting point of the direct problem, prepared once for many rays. */
 struct lm_geo_origin {
@@ -132,8 +145,9 @@ void lm_ground_patch_path(struct lm_ground_path *path, const struct lm_ground_pa
                           uint32_t line, uint32_t lines, uint32_t cells);
 
 /* Distance and azimuth from one position to another up to 300 km away (inverse problem), by the
- * radii at the midpoint. The error is under 0.2 % of the distance below 75 degrees of latitude.
- * That is enough to point the antenna, not for navigation. Cost: about 300 instructions. */
+ * radii at the midpoint. The error is under 0.2 % of the distance below 75 degrees of latitude, and
+ * under 1 % below 85. That is enough to point the antenna, not for navigation. Cost: about 300
+ * instructions. */
 void lm_geo_inverse(struct lm_position from, struct lm_position to, uint32_t *distance_m_q8,
                     fx_bam_t *azimuth);
 

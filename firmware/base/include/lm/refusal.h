@@ -18,6 +18,7 @@ enum lm_refusal {
     LM_REFUSED_GIMBAL, /* the patch is farther off the nose than the antenna turns */
     LM_REFUSED_DWELL,  /* the dwell would be too long */
     LM_REFUSED_SWAP,   /* there is no other display, it is silent, or it refuses */
+    LM_REFUSED_POLE,   /* the patch is too near to a pole */
     LM_REFUSALS
 };
 

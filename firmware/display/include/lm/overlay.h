@@ -37,9 +37,10 @@ enum lm_flag {
     LM_FLAG_MALFUNCTION = 1 << 14, /* the exercise has broken something: not written over the
                                       picture */
     LM_FLAG_RESTART = 1 << 15,     /* the display has restarted, with the settings of before */
-    LM_FLAG_UNSIGNED = 1 << 16     /* the board does not know who made the database */
+    LM_FLAG_UNSIGNED = 1 << 16,    /* the board does not know who made the database */
+    LM_FLAG_POLE = 1 << 17         /* too near to a pole: the picture is removed */
 };
-enum { LM_FLAGS = 17 };
+enum { LM_FLAGS = 18 };
 
 /* The word of flag `number`, 0..LM_FLAGS - 1, which is the number of its bit: at most eight
  * characters, in static memory. */

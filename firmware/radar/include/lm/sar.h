@@ -159,6 +159,7 @@ struct lm_sar {
 
 /* Judge whether a patch can be made. Returns LM_REFUSED_NOT, or the first of these that holds:
  * - LM_REFUSED_CELL: cell_mm is outside the table's cell_min_mm..cell_max_mm;
+ * - LM_REFUSED_POLE: lm_geo_is_polar(centre);
  * - LM_REFUSED_FAR: range_m is above 250,000;
  * - LM_REFUSED_NEAR: range_m is below 1,000, the guard cells would begin nearer than 16
  *   LM_RANGE_MIN_M, or the patch would need more than LM_PATCH_LINES_MAX lines;

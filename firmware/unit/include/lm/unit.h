@@ -135,6 +135,7 @@ struct lm_unit {
         uint16_t rank;  /* rank of the position's sender (struct lm_nav_origin) as of then */
     } position_seen;
     struct lm_ownship ownship; /* extrapolated to the last step */
+    bool is_polar;             /* lm_geo_is_polar: its position is LM_NAV_DEAD to the unit */
     struct lm_unit_weather weather;
     struct lm_exercise exercise;
     struct lm_live_bus live;

@@ -106,6 +106,22 @@ TEST(every_cell_of_an_80_mile_line_is_within_half_a_cell)
     }
 }
 
+TEST(up_to_the_polar_latitude_every_cell_of_the_longest_line_is_within_a_cell)
+{
+    const double limit_deg = LM_GEO_POLAR_DEG, cell_m = 148160 / 512.0;
+    for (int sign = -1; sign <= 1; sign += 2) {
+        const double at = worst_cell(sign * limit_deg, 179.5, 148160, 512);
+        const double beyond = worst_cell(sign * (limit_deg + 1), 179.5, 148160, 512);
+        print_message("# at %g: worst cell %.0f m off, at %g %.0f m; a cell is %.0f m\n",
+                      sign * limit_deg, at, sign * (limit_deg + 1), beyond, cell_m);
+        assert_true(at < cell_m && beyond > cell_m);
+        assert_false(lm_geo_is_polar(place_of(sign * limit_deg, 0)));
+        assert_true(lm_geo_is_polar(place_of(sign * (limit_deg + 1e-6), 0)));
+        assert_true(lm_geo_is_polar(place_of(sign * 90, 0)));
+    }
+    assert_false(lm_geo_is_polar(place_of(0, 180)));
+}
+
 /* The worst cell of `cells` along every fifth of 256 lines of a fan, metres off. */
 static double worst_patch_cell(double lat, double lon, const struct lm_ground_extent *extent,
                                int cells)
@@ -168,6 +184,28 @@ TEST(the_inverse_problem_finds_distance_and_azimuth)
         lm_geo_inverse(place_of(52, 179.9), place_of(to_lat, to_lon), &distance_q8, &azimuth);
         assert_true(fabs(distance_q8 / 256.0 - 60000) < 120);
         assert_true(fabs(remainder(hs_degrees(azimuth) - deg, 360)) < 0.1);
+    }
+}
+
+TEST(the_inverse_problem_is_within_a_hundredth_up_to_the_polar_latitude)
+{
+    static const double places[][2] = {{75, 0.2}, {80, 0.4}, {-83, 0.7}, {85, 1}, {-85, 1}};
+    for (size_t i = 0; i < sizeof places / sizeof *places; i++) {
+        const double latitude = places[i][0], metres = 148160;
+        double worst = 0;
+        for (int deg = 0; deg < 360; deg += 7) {
+            double to_lat, to_lon;
+            wgs84_direct(latitude, 179.9, deg, metres, &to_lat, &to_lon);
+            uint32_t distance_q8;
+            fx_bam_t azimuth;
+            lm_geo_inverse(place_of(latitude, 179.9), place_of(to_lat, to_lon), &distance_q8,
+                           &azimuth);
+            const double turn = remainder(hs_degrees(azimuth) - deg, 360) * 3.14159265 / 180;
+            worst = fmax(worst, hypot(distance_q8 / 256.0 - metres, turn * metres));
+        }
+        print_message("# latitude %g: inverse problem off by %.2f %% at 80 nm\n", latitude,
+                      worst / metres * 100);
+        assert_true(worst < places[i][1] / 100 * metres);
     }
 }
 

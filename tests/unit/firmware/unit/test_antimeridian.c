@@ -36,7 +36,7 @@ static void add_targets(struct rig *r, double longitude_deg)
 
 static struct rig *start_at(double longitude_deg)
 {
-    struct rig *r = make_rig_at(longitude_deg);
+    struct rig *r = make_rig_at(46, longitude_deg);
     assert_int_equal(lm_unit_init(&r->unit, &r->board.lent), LM_OK);
     add_targets(r, longitude_deg);
     command(r, range_10);
