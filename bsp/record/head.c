@@ -130,14 +130,12 @@ static uint32_t switches_of(const struct lm_board *b)
     return word | (uint32_t)b->bus_partner << RECORD_PARTNER_BIT;
 }
 
-void record_describe(struct record_head *head, const struct lm_board *board, uint64_t zero_us)
+void record_describe_plain(struct record_head *head, const struct lm_board *board, uint64_t zero_us)
 {
     *head = (struct record_head){
         .zero_us = zero_us,
         .image_bytes = board->flash->size_bytes,
         .image_crc = crc_of_flash(board->flash, board->flash_poll_limit),
-        .profile_crc = crc_of_tables(board),
-        .radar_crc = crc_of_radar(board->radar),
         .width_px = board->display->width_px,
         .height_px = board->display->height_px,
         .tile_slots = (uint32_t)(board->tile_pool_bytes / sizeof(struct lm_tile)),
@@ -157,6 +155,13 @@ void record_describe(struct record_head *head, const struct lm_board *board, uin
     if (head->has_nodes) {
         memcpy(head->nodes, board->bus_nodes, sizeof head->nodes);
     }
+}
+
+void record_describe(struct record_head *head, const struct lm_board *board, uint64_t zero_us)
+{
+    record_describe_plain(head, board, zero_us);
+    head->profile_crc = crc_of_tables(board);
+    head->radar_crc = crc_of_radar(board->radar);
 }
 
 /* ---- the text ---- */

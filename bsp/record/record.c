@@ -1,29 +1,69 @@
+/* Needs no C library: a board without an operating system records with it too (bsp/zcu102). */
 #include "record.h"
 
-#include <inttypes.h>
-#include <stdio.h>
-#include <string.h>
-
 #include "fx/crc32c.h"
+#include "fx/mem.h"
 
+/* ---- text ---- */
+
+enum { LOWER_CASE = 'a' - 'A' };
+
+static char *add_text(char *to, const char *text)
+{
+    while (*text != '\0') {
+        *to++ = *text++;
+    }
+    return to;
+}
+
+static char *add_decimal(char *to, uint64_t value, uint32_t least_digits)
+{
+    char digits[20]; /* of 2^64 */
+    uint32_t count = 0;
+    do {
+        digits[count++] = (char)('0' + value % 10);
+        value /= 10;
+    } while (value != 0 || count < least_digits);
+    while (count > 0) {
+        *to++ = digits[--count];
+    }
+    return to;
+}
+
+static char *add_hex(char *to, uint32_t value, uint32_t digits, uint32_t letters)
+{
+    while (digits > 0) {
+        const uint32_t digit = value >> 4 * --digits & 15;
+        *to++ = (char)(digit < 10 ? '0' + digit : 'A' - 10 + letters + digit);
+    }
+    return to;
+}
+
+/* ---- lines ---- */
+
+/* A line is shorter than RECORD_LINE_MAX: 20 digits of seconds and 17 of a frame's data are the
+ * longest. */
 static void put_line(struct recorder *r, uint64_t time_us, const char *interface,
                      const struct lm_can_frame *f)
 {
     char line[RECORD_LINE_MAX];
     const uint64_t us = r->zero_us + time_us;
-    int n = snprintf(line, sizeof line, "(%" PRIu64 ".%06u) %s ", us / 1000000,
-                     (unsigned)(us % 1000000), interface);
-    n += snprintf(line + n, sizeof line - (size_t)n, "%0*" PRIX32 "#%s",
-                  f->is_extended || f->is_error ? 8 : 3, f->id | (f->is_error ? 0x20000000u : 0),
-                  f->is_remote ? "R" : "");
+    char *to = add_decimal(add_text(line, "("), us / 1000000, 1);
+    to = add_decimal(add_text(to, "."), us % 1000000, 6);
+    to = add_text(add_text(add_text(to, ") "), interface), " ");
+    to = add_hex(to, f->id | (f->is_error ? 0x20000000u : 0), f->is_extended || f->is_error ? 8 : 3,
+                 0);
+    *to++ = '#';
     if (f->is_remote) {
-        n += snprintf(line + n, sizeof line - (size_t)n, "%u", f->length);
+        to = add_decimal(add_text(to, "R"), f->length, 1);
     }
     for (uint32_t i = 0; i < f->length && !f->is_remote; i++) {
-        n += snprintf(line + n, sizeof line - (size_t)n, "%02X", f->data[i]);
+        to = add_hex(to, f->data[i], 2, 0);
     }
-    line[n++] = '\n';
-    r->sink.put(r->sink.ctx, line, (size_t)n);
+    *to++ = '\n';
+    r->lines.count++;
+    r->lines.crc = fx_crc32c(r->lines.crc, line, (size_t)(to - line));
+    r->sink.put(r->sink.ctx, line, (size_t)(to - line));
 }
 
 static void put_own(struct recorder *r, uint64_t time_us, uint32_t kind, const uint8_t *data,
@@ -48,6 +88,10 @@ static void put_ticks(struct recorder *r)
     if (r->ticks.count > 0) {
         put_own(r, r->ticks.base_us, RECORD_STEPS, r->ticks.bytes, r->ticks.count);
         r->ticks.count = 0;
+        if (r->options.has_sums && r->lines.count >= RECORD_SUM_LINES) {
+            put_word(r, RECORD_SUM, 0, r->lines.crc);
+            r->lines.count = r->lines.crc = 0; /* the sum is not in the next one */
+        }
     }
 }
 
@@ -210,14 +254,27 @@ static int acquire(void *ctx, struct lm_surface *surface)
     return status;
 }
 
+static void put_check(struct recorder *r, uint32_t number)
+{
+    if (r->options.is_check_of_one_row) {
+        const uint32_t row = number * RECORD_ROW_STEP % r->surface.height_px;
+        const uint32_t crc = record_row_crc(0, &r->surface, row);
+        const uint8_t data[6] = {(uint8_t)row,        (uint8_t)(row >> 8),  (uint8_t)crc,
+                                 (uint8_t)(crc >> 8), (uint8_t)(crc >> 16), (uint8_t)(crc >> 24)};
+        put_pending(r);
+        put_own(r, r->now_us, RECORD_ROW, data, sizeof data);
+    } else {
+        put_event(r, RECORD_CHECK, (int)(number % RECORD_CHECK_ROWS),
+                  record_rows_crc(&r->surface, number));
+    }
+}
+
 static int present(void *ctx, const struct lm_damage *changed)
 {
     struct recorder *r = ctx;
     r->pictures++;
-    if (r->check_every != 0 && r->pictures % r->check_every == 0) {
-        const uint32_t number = r->pictures / r->check_every;
-        put_event(r, RECORD_CHECK, (int)(number % RECORD_CHECK_ROWS),
-                  record_rows_crc(&r->surface, number));
+    if (r->options.check_every != 0 && r->pictures % r->options.check_every == 0) {
+        put_check(r, r->pictures / r->options.check_every);
     }
     const int status = r->display->present(r->display->ctx, changed);
     if (status != r->present_status) {
@@ -229,18 +286,39 @@ static int present(void *ctx, const struct lm_damage *changed)
 
 /* ---- begin, steps, end ---- */
 
-size_t record_head_write(const struct record_head *h, char *text, size_t room)
+static char *add_word(char *to, const char *text)
 {
-    const int length =
-        snprintf(text, room,
-                 "%d %s %" PRIu64 " %" PRIu64 " %08" PRIx32 " %s %08" PRIx32 " %08" PRIx32
-                 " %" PRIu32 " %" PRIu32 " %" PRIu32 " %" PRIu32 " %" PRIu32 " %" PRIu32 " %" PRIu32
-                 " %" PRIu32 " %" PRIu32 " %s %s",
-                 RECORD_VERSION, h->version, h->zero_us, h->image_bytes, h->image_crc, h->profile,
-                 h->profile_crc, h->radar_crc, h->width_px, h->height_px, h->tile_slots,
-                 h->glass_step_px, h->noise_seed, h->flash_poll_limit, h->node,
-                 h->hardware_revision, h->switches, h->restart, h->build);
-    return length < 0 || (size_t)length >= room ? 0 : (size_t)length;
+    return add_text(add_text(to, text), " ");
+}
+
+static char *add_number(char *to, uint64_t value)
+{
+    return add_text(add_decimal(to, value, 1), " ");
+}
+
+static char *add_crc(char *to, uint32_t crc)
+{
+    return add_text(add_hex(to, crc, 8, LOWER_CASE), " ");
+}
+
+/* The longest words of every member, and a blank behind each. */
+enum { HEAD_TEXT_MAX = sizeof(struct record_head) + 16 * 10 };
+
+/* The head as a text of words: how many bytes. */
+static uint32_t write_head(const struct record_head *h, char text[HEAD_TEXT_MAX])
+{
+    char *to = add_word(add_number(text, RECORD_VERSION), h->version);
+    to = add_number(add_number(to, h->zero_us), h->image_bytes);
+    to = add_word(add_crc(to, h->image_crc), h->profile);
+    to = add_crc(add_crc(to, h->profile_crc), h->radar_crc);
+    const uint32_t numbers[] = {h->width_px,      h->height_px,         h->tile_slots,
+                                h->glass_step_px, h->noise_seed,        h->flash_poll_limit,
+                                h->node,          h->hardware_revision, h->switches};
+    for (uint32_t i = 0; i < sizeof numbers / sizeof *numbers; i++) {
+        to = add_number(to, numbers[i]);
+    }
+    to = add_text(add_word(to, h->restart), h->build);
+    return (uint32_t)(to - text);
 }
 
 static void wrap(struct recorder *r, struct lm_board *board)
@@ -270,25 +348,32 @@ static void wrap(struct recorder *r, struct lm_board *board)
     board->display = &r->display_of_unit;
 }
 
+void record_begin_as(struct recorder *r, const struct record_sink *sink, struct lm_board *board,
+                     const struct record_head *head, const struct record_options *options)
+{
+    char text[HEAD_TEXT_MAX];
+    memset(r, 0, sizeof *r);
+    r->sink = *sink;
+    r->zero_us = head->zero_us;
+    r->options = *options;
+    wrap(r, board);
+    const uint32_t length = write_head(head, text);
+    put_blob(r, RECORD_HEAD, (const uint8_t *)text,
+             length < RECORD_BLOB_MAX ? length : RECORD_BLOB_MAX);
+    if (board->settings) {
+        put_blob(r, RECORD_SETTINGS, (const uint8_t *)board->settings, sizeof *board->settings);
+    }
+    if (head->has_nodes) {
+        put_blob(r, RECORD_NODES, head->nodes, sizeof head->nodes);
+    }
+}
+
 void record_begin(struct recorder *r, const struct record_sink *sink, struct lm_board *board,
                   uint64_t zero_us, uint32_t check_every)
 {
     struct record_head head;
-    char text[RECORD_BLOB_MAX];
-    memset(r, 0, sizeof *r);
-    r->sink = *sink;
-    r->zero_us = zero_us;
-    r->check_every = check_every;
     record_describe(&head, board, zero_us);
-    wrap(r, board);
-    put_blob(r, RECORD_HEAD, (const uint8_t *)text,
-             (uint32_t)record_head_write(&head, text, sizeof text));
-    if (board->settings) {
-        put_blob(r, RECORD_SETTINGS, (const uint8_t *)board->settings, sizeof *board->settings);
-    }
-    if (head.has_nodes) {
-        put_blob(r, RECORD_NODES, head.nodes, sizeof head.nodes);
-    }
+    record_begin_as(r, sink, board, &head, &(struct record_options){.check_every = check_every});
 }
 
 /* A step's time is the pause since the one before, less the usual one, folded to a small number:
@@ -332,7 +417,10 @@ void record_part(struct recorder *r, uint32_t number)
 
 void record_restart(struct recorder *r, const char *restart)
 {
-    const size_t length = restart ? strlen(restart) : 0;
+    uint32_t length = 0;
+    while (restart && restart[length] != '\0') {
+        length++;
+    }
     put_blob(r, RECORD_RESTART, (const uint8_t *)restart,
              (uint32_t)(length < RECORD_BLOB_MAX ? length : RECORD_BLOB_MAX));
 }

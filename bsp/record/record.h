@@ -39,7 +39,9 @@ enum {
     RECORD_RESTART = 16, /* blob: the cause of the restart, where it is learnt after the start */
     RECORD_CEASED = 17,  /* the recorder gave up here, and the unit flew on: why, lines lost */
     RECORD_SETTINGS =
-        18, /* blob: the settings that the unit began with, where not those of power-up */
+        18,          /* blob: the settings that the unit began with, where not those of power-up */
+    RECORD_ROW = 19, /* checksum of one row of a picture presented */
+    RECORD_SUM = 20, /* checksum of the lines since the last such line, or since the beginning */
     RECORD_KINDS
 };
 
@@ -60,8 +62,10 @@ enum record_reason {
 enum {
     RECORD_BLOB_MAX = 255,
     RECORD_LINE_MAX = 80,
-    RECORD_TICK_US = 2000, /* the pause between steps that costs least to write */
-    RECORD_CHECK_ROWS = 16 /* a check covers every 16th row, the next one the rows below */
+    RECORD_TICK_US = 2000,  /* the pause between steps that costs least to write */
+    RECORD_CHECK_ROWS = 16, /* a check covers every 16th row, the next one the rows below */
+    RECORD_ROW_STEP = 37,   /* a check of one row: the next one so many rows below */
+    RECORD_SUM_LINES = 16   /* a sum stands behind so many lines, or some more */
 };
 
 /* Where lines go. `put` borrows them for the call. */
@@ -106,6 +110,13 @@ enum {
     RECORD_PARTNER_BIT = 16
 };
 
+/* What a recording has besides what is needed. */
+struct record_options {
+    uint32_t check_every;     /* a checksum with every so many pictures; 0: never */
+    bool is_check_of_one_row; /* for slow processors: some 9 instructions a pixel of the check */
+    bool has_sums;            /* for media that may lose or change bytes */
+};
+
 /* Recorder; the caller owns it, and it must not move while the unit runs. */
 struct recorder {
     struct record_sink sink;
@@ -137,21 +148,32 @@ struct recorder {
     int acquire_status, present_status;
     uint8_t age;
     struct lm_surface surface;
-    uint32_t pictures, check_every;
+    uint32_t pictures;
+    struct record_options options;
+    struct {
+        uint32_t count, crc; /* since the last sum */
+    } lines;
 };
 
 /* Fill the head for a board. Reads 4 KiB of the flash, and waits for them, at most
  * flash_poll_limit polls. */
 void record_describe(struct record_head *head, const struct lm_board *board, uint64_t zero_us);
 
-/* The head as one line of text, and back. record_head_read returns false for any other text. */
-size_t record_head_write(const struct record_head *head, char *text, size_t room);
+/* The same of a board that brings neither tables of the bus nor a radar table: a small program. */
+void record_describe_plain(struct record_head *head, const struct lm_board *board,
+                           uint64_t zero_us);
+
+/* Read the text of a head. Returns false for any other text. */
 bool record_head_read(struct record_head *head, const char *text);
 
 /* Begin: write the head, and put the recorder's ports into *board, before lm_unit_init. A checksum
  * of the picture is written with every `check_every`th one; 0: never. */
 void record_begin(struct recorder *r, const struct record_sink *sink, struct lm_board *board,
                   uint64_t zero_us, uint32_t check_every);
+
+/* The same with a head that is filled already, and a choice of what it has. */
+void record_begin_as(struct recorder *r, const struct record_sink *sink, struct lm_board *board,
+                     const struct record_head *head, const struct record_options *options);
 
 /* Announce a step, before lm_unit_step. */
 void record_step(struct recorder *r, uint64_t now_us);
@@ -180,6 +202,9 @@ void record_end(struct recorder *r);
  * false if they are no control. */
 uint32_t record_control_bytes(const struct lm_control *control, uint8_t bytes[RECORD_BLOB_MAX]);
 bool record_control_read(struct lm_control *control, const uint8_t *bytes, uint32_t count);
+
+/* Checksum of a row of a surface, which goes on from `crc`. */
+uint32_t record_row_crc(uint32_t crc, const struct lm_surface *s, uint32_t y);
 
 /* Checksum of the rows of a surface that the check of picture `number` covers. */
 uint32_t record_rows_crc(const struct lm_surface *s, uint32_t number);

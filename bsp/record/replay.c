@@ -84,6 +84,15 @@ static bool is_interface(const char *line, const char *name)
     return *name == '\0' && *c == ' ';
 }
 
+static void add_to_sum(struct replay *p, const char *line)
+{
+    uint32_t length = 0;
+    while (line[length] != '\0') {
+        length++;
+    }
+    p->lines_crc = fx_crc32c(fx_crc32c(p->lines_crc, line, length), "\n", 1);
+}
+
 /* Read a line into the event. False if there is none. */
 static bool read_line(struct replay *p, struct replay_event *e)
 {
@@ -109,6 +118,9 @@ static bool read_line(struct replay *p, struct replay_event *e)
                                                    : REPLAY_HEARD;
     e->frame.id -= is_own ? RECORD_ID : 0;
     e->frame.time_us -= p->head.zero_us; /* of a frame that is heard, its arrival */
+    if (e->kind != REPLAY_OWN || e->frame.id != RECORD_SUM) {
+        add_to_sum(p, line);
+    }
     return true;
 }
 
@@ -118,7 +130,7 @@ static uint32_t word_of(const struct lm_can_frame *f)
     return d[1] | (uint32_t)d[2] << 8 | (uint32_t)d[3] << 16 | (uint32_t)d[4] << 24;
 }
 
-/* What an own frame is besides an answer of a port: the mark of a part, or of the end. */
+/* What an own frame is besides an answer of a port: a sum, the mark of a part, or of the end. */
 static bool take_mark(struct replay *p)
 {
     const struct lm_can_frame *f = &p->next.frame;
@@ -126,6 +138,13 @@ static bool take_mark(struct replay *p)
         if (word_of(f) != ++p->part) {
             stop(p, "a part is missing before it");
         }
+        return true;
+    }
+    if (f->id == RECORD_SUM) {
+        if (word_of(f) != p->lines_crc) {
+            stop(p, "lines before it are damaged or missing");
+        }
+        p->lines_crc = 0;
         return true;
     }
     if (f->id == RECORD_END || f->id == RECORD_CEASED) {
@@ -210,7 +229,9 @@ static void look_ahead(struct replay *p)
         if (e->kind != REPLAY_OWN) {
             return;
         }
-        if (is_blob(e->frame.id)) {
+        if (e->frame.id == RECORD_HEAD && p->steps > 0) {
+            stop(p, "another recording begins here, as the board was restarted");
+        } else if (is_blob(e->frame.id)) {
             join_blob(p);
             if (e->kind == REPLAY_OWN && take_setting(p)) {
                 e->kind = REPLAY_NONE;
@@ -452,8 +473,23 @@ static int acquire(void *ctx, struct lm_surface *surface)
     return LM_OK;
 }
 
+/* A row that this glass does not have fails. */
+static void check_row(struct replay *p)
+{
+    const struct lm_surface s = canvas(p, 0);
+    const uint8_t *d = p->next.frame.data;
+    const uint32_t row = d[0] | (uint32_t)d[1] << 8;
+    const uint32_t crc = d[2] | (uint32_t)d[3] << 8 | (uint32_t)d[4] << 16 | (uint32_t)d[5] << 24;
+    p->count.checks++;
+    p->count.checks_failed += row >= s.height_px || record_row_crc(0, &s, row) != crc;
+    take(p);
+}
+
 static void check_picture(struct replay *p)
 {
+    if (is_next(p, RECORD_ROW)) {
+        check_row(p);
+    }
     if (is_next(p, RECORD_CHECK)) {
         const struct lm_surface s = canvas(p, 0);
         p->count.checks++;
@@ -499,8 +535,7 @@ const char *replay_difference(const struct replay *p, const struct record_head *
 {
     const struct record_head *h = &p->head;
     return !is_same(h->version, mine->version) ? "another version of the firmware"
-           : h->image_bytes != mine->image_bytes || h->image_crc != mine->image_crc
-               ? "another image"
+           : h->image_bytes < mine->image_bytes || h->image_crc != mine->image_crc ? "another image"
            : h->profile_crc != mine->profile_crc ? "another table of the bus"
            : h->radar_crc != mine->radar_crc     ? "another radar table"
                                                  : NULL;
@@ -545,7 +580,9 @@ void replay_wrap_with(struct replay *p, struct lm_board *board, uint32_t *memory
     set_board(p, board);
     p->image = board->flash;
     p->flash = (struct lm_flash){.ctx = p,
-                                 .size_bytes = board->flash->size_bytes,
+                                 .size_bytes = p->image->size_bytes > p->head.image_bytes
+                                                   ? p->image->size_bytes
+                                                   : p->head.image_bytes,
                                  .read_start = read_start,
                                  .read_poll = read_poll};
     p->can = (struct lm_can){.ctx = p, .receive = receive};

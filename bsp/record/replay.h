@@ -47,6 +47,7 @@ struct replay {
     void *source;    /* of the lines: in replay_file.c an owned FILE */
     enum replay_line (*next_line)(struct replay *p, char *line);
     uint32_t line, part;
+    uint32_t lines_crc; /* of the lines since the last sum */
     struct replay_event next;
     struct {
         uint8_t bytes[8];
@@ -88,7 +89,8 @@ struct replay {
 int replay_open(struct replay *p, const char *path);
 
 /* Compare the head with what this program has. Returns NULL, or in static memory what differs: the
- * version, the image, the table of the bus or the radar. `mine` is described by record_describe. */
+ * version, the image, the table of the bus or the radar. `mine` is described by record_describe.
+ * Its image may be a file without what lay behind it in a board's flash. */
 const char *replay_difference(const struct replay *p, const struct record_head *mine);
 
 /* Whether it was recorded by another build of this firmware. That is no reason not to show it: the

@@ -68,7 +68,7 @@ static void complain_if(struct zcu102 *z, int status, const char *device_name)
 
 static void open_devices(struct zcu102 *z)
 {
-    drv_uart_init(&z->bezel_line, device(UART1_BASE), UART_CLOCK_HZ, ZCU102_BAUD);
+    drv_uart_init(&z->bezel_line, device(UART1_BASE), UART_CLOCK_HZ, ZCU102_LINE_BAUD);
     drv_irq_attach(&z->irq, UART1_LINE, drv_uart_interrupt, &z->bezel_line);
     drv_bezel_serial_init(&z->bezel, get_byte, &z->bezel_line);
 
@@ -123,6 +123,7 @@ void zcu102_open(struct zcu102 *z)
 
 int zcu102_start(struct zcu102 *z)
 {
+    zcu102_recording_begin(&z->recording, &z->bezel_line, &z->console, &z->lent);
     const int status = lm_unit_init(&z->unit, &z->lent);
     if (status == LM_OK) {
         drv_timer_init(&z->timer);
@@ -150,6 +151,7 @@ void zcu102_step(struct zcu102 *z)
 {
     wait_until(z, z->step_us);
     drv_can_deliver(&z->can, z->step_us);
+    zcu102_recording_step(&z->recording, z->step_us);
     lm_unit_step(&z->unit, z->step_us);
     z->steps++;
     z->step_us += ZCU102_STEP_US;

@@ -12,6 +12,7 @@
 #include "drv/watchdog_cadence.h"
 #include "exception.h"
 #include "lm/unit.h"
+#include "recording.h"
 #include "restart.h"
 #include "supervisor.h"
 
@@ -23,6 +24,7 @@ enum {
     ZCU102_STEP_US = 2000,   /* at the fastest scale a line is due every 2 ms */
     ZCU102_LATE_US = 100000, /* steps that are later than this are skipped */
     ZCU102_BAUD = 115200,
+    ZCU102_LINE_BAUD = 2000000, /* the bezel's, and of what is recorded */
     ZCU102_BUS_BIT_RATE = 1000000
 };
 
@@ -38,6 +40,7 @@ struct zcu102 {
     struct drv_watchdog watchdog;
     struct zcu102_supervisor supervisor;
     struct zcu102_restart last_restart;
+    struct zcu102_recording recording;
 
     struct lm_board lent; /* the unit's ports; a test may replace one before zcu102_start */
     struct lm_unit unit;

@@ -4,10 +4,16 @@ CFLAGS_drivers += $(OPT_board)
 CFLAGS_bsp     += $(OPT_board)
 # Nothing of the display's runs in interrupts, and a picture has many pixels.
 $(O)/drivers/display/display_dp.o: OPT_board := -O3
+# A row of each picture goes through it.
+$(O)/bsp/record/rows_crc.o: OPT_board += -O2
+# At -O3 these grow by copies of loops that save no instruction.
+$(addprefix $(O)/firmware/,radar/weather.o clutter/class_gain.o): OPT_core := -O2
+$(O)/firmware/display/scan_conv.o: OPT_core += -fno-unswitch-loops
 # Every tile goes through it.
 $(O)/bsp/zcu102/crc32c.o: OPT_board += -O2
 LDSCRIPT       := linker/zcu102.ld
-BOARD_OBJS     := $(call objs,$(filter-out %/main.c,$(wildcard bsp/zcu102/*.c))) \
+BOARD_OBJS     := $(call objs,$(filter-out %/main.c,$(wildcard bsp/zcu102/*.c)) \
+    $(addprefix bsp/record/,build_identity.c control_bytes.c head.c record.c rows_crc.c)) \
     $(patsubst %.S,$(O)/%.o,$(wildcard bsp/zcu102/*.S))
 LIB_board      := $(O)/libboard.a
 IMAGE          := $(O)/landmass.elf

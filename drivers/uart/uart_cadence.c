@@ -1,5 +1,7 @@
 #include "drv/uart_cadence.h"
 
+#include "fx/mem.h"
+
 enum {
     CR = 0x00,
     MR = 0x04,
@@ -23,6 +25,7 @@ enum {
     MR_PARITY_NONE = 4 << 3,
 
     IXR_RTRIG = 1 << 0,
+    IXR_TEMPTY = 1 << 3,
     IXR_ROVR = 1 << 5,
     IXR_FRAME = 1 << 6,
     IXR_PARE = 1 << 7,
@@ -37,7 +40,9 @@ enum {
 
     /* Samples of a bit, BAUD_RATE_DIVIDER + 1. */
     SAMPLES_LEAST = 5,
-    SAMPLES_MOST = 16
+    SAMPLES_MOST = 16,
+
+    FIFO_BYTES = 64
 };
 
 /* The transmitter empties by itself, a character in 87 us: this bounds the loop, and no more. */
@@ -92,6 +97,54 @@ void drv_uart_drain(struct drv_uart *u)
     (void)drv_wait_for(u->base, SR, SR_TXEMPTY | SR_TACTIVE, SR_TXEMPTY, TX_POLLS);
 }
 
+void drv_uart_lend(struct drv_uart *u, uint8_t *bytes, uint32_t size)
+{
+    u->out.bytes = bytes;
+    u->out.size = size;
+}
+
+uint32_t drv_uart_room(const struct drv_uart *u)
+{
+    return u->out.size - (u->out.head - u->out.tail);
+}
+
+/* At most a FIFO of them. False: none waited. */
+static bool refill(struct drv_uart *u)
+{
+    const uint32_t head = u->out.head, first = u->out.tail;
+    uint32_t tail = first;
+    while (tail != head && tail - first < FIFO_BYTES && !(drv_read(u->base, SR) & SR_TXFULL)) {
+        drv_write(u->base, FIFO, u->out.bytes[tail++ & (u->out.size - 1)]);
+    }
+    u->out.tail = tail;
+    return head != first;
+}
+
+/* The first bytes are written here. The interrupt of the empty FIFO brings the next. */
+static void start(struct drv_uart *u)
+{
+    if (!u->out.is_active) {
+        drv_write(u->base, ISR, IXR_TEMPTY);
+        (void)refill(u);
+        u->out.is_active = true;
+        drv_write(u->base, IER, IXR_TEMPTY);
+    }
+}
+
+bool drv_uart_queue(struct drv_uart *u, const void *bytes, uint32_t count)
+{
+    if (count > drv_uart_room(u)) {
+        return false;
+    }
+    const uint32_t at = u->out.head & (u->out.size - 1);
+    const uint32_t first = count < u->out.size - at ? count : u->out.size - at;
+    memcpy(u->out.bytes + at, bytes, first);
+    memcpy(u->out.bytes, (const uint8_t *)bytes + first, count - first);
+    u->out.head += count;
+    start(u);
+    return true;
+}
+
 int drv_uart_get(struct drv_uart *u)
 {
     const uint32_t tail = u->tail;
@@ -119,9 +172,14 @@ void drv_uart_interrupt(void *uart)
     const uint32_t cause = drv_read(u->base, ISR);
     u->count.overflowed += (cause & IXR_ROVR) != 0;
     u->count.damaged += (cause & (IXR_FRAME | IXR_PARE | IXR_RBRK)) != 0;
+    if (u->out.is_active && (cause & IXR_TEMPTY)) {
+        drv_write(u->base, ISR, IXR_TEMPTY);
+        u->out.is_active = refill(u);
+        drv_write(u->base, u->out.is_active ? IER : IDR, IXR_TEMPTY);
+    }
     /* At most a full FIFO, so that a flood cannot keep the core here. */
-    for (uint32_t i = 0; i < 64 && !(drv_read(u->base, SR) & SR_RXEMPTY); i++) {
+    for (uint32_t i = 0; i < FIFO_BYTES && !(drv_read(u->base, SR) & SR_RXEMPTY); i++) {
         take_byte(u, (uint8_t)drv_read(u->base, FIFO));
     }
-    drv_write(u->base, ISR, cause);
+    drv_write(u->base, ISR, cause & ~(uint32_t)IXR_TEMPTY);
 }

@@ -47,6 +47,8 @@ $(foreach kind,bezel can display flash gpio usb watchdog,$(call unit_tests, driv
 $(call unit_tests, drivers,                     lib fixed drivers)
 $(call unit_tests, bsp/panel-linux,             slots trust bus lib firmware fixed drivers, ,             libusb-1.0 libgpiod -pthread)
 
+$(call unit_tests, bsp/zcu102,                  lib firmware fixed drivers)
+
 $(call unit_tests, host-sim/lib,                gis lib fixed firmware,               db)
 $(call unit_tests, host-sim/classify,           classify gis lib)
 $(call unit_tests, host-sim/image,              image lib fixed firmware,             db)
@@ -100,6 +102,10 @@ $(UNIT)/drivers/gpio/test_gpio2: LDLIBS += $(WRAP_gpiod2)
 $(UNIT)/drivers/test_zynqmp_devices: $(addprefix $(O)/drivers/,can/can_zynqmp.o display/dp_link.o flash/flash_gqspi.o \
     irq/irq_gic400.o uart/uart_cadence.o watchdog/watchdog_cadence.o)
 $(UNIT)/drivers/bezel/test_bezel_serial: $(O)/drivers/bezel/bezel_serial.o
+
+# Of the board itself, what needs no board.
+$(UNIT_bsp/zcu102): $(addprefix $(O)/,bsp/zcu102/recording.o bsp/zcu102/console.o drivers/uart/uart_cadence.o) $(LIB_record)
+$(O)/bsp/zcu102/%.o: EXTRA_CFLAGS += -Ibsp/zcu102
 
 # The panel's program is a library without its main; its bezel stands on the fake lines of drivers/gpio.
 $(UNIT_bsp/panel-linux): $(LIB_panel) $(LIB_record)

@@ -37,8 +37,9 @@ def received_log(m, elf, count, path):
 
 
 def fly(out, chips, scenario, cores=2, options=("-no-reboot",), limit=300, elf=machine.BUILD / "flight.elf"):
-    """The finished machine, with its lines, values and looks, and received.log in `out`."""
-    with machine.Machine(elf, out, chips, [("scenario", scenario)], cores, options=options, limit=limit) as m:
+    """The finished machine, with its lines, values and looks, and received.log and recording.log in `out`."""
+    with machine.Machine(elf, out, chips, [("scenario", scenario)], cores, options=options, limit=limit,
+                         uart1=f"file:{Path(out) / 'recording.log'}") as m:
         m.run(until="stack-used")
         if m.lines and m.lines[-1].startswith("stack-used"):
             received_log(m, elf, m.value("received"), Path(out) / "received.log")

@@ -54,9 +54,9 @@ def checksum(picture):
 
 
 class Machine:
-    """A run of QEMU. `looks` collects what the image showed: name -> (checksum it printed, checksum seen)."""
+    """A run of QEMU, with `uart1` at the bezel's serial line, in QEMU's words. `looks` collects what the image showed: name -> (checksum it printed, checksum seen)."""
 
-    def __init__(self, elf, folder, chips=(), memory=(), cores=1, icount=True, options=(), limit=120, uart1=None):
+    def __init__(self, elf, folder, chips=(), memory=(), cores=1, icount=True, options=(), limit=120, uart1="null"):
         self.folder = Path(folder)
         self.folder.mkdir(parents=True, exist_ok=True)
         self.looks = {}
@@ -69,7 +69,7 @@ class Machine:
         listener.settimeout(20)
         command = ["timeout", "-k", "2", str(limit), QEMU, "-M", "xlnx-zcu102,canbus0=cb,canbus1=cb",
                    "-object", "can-bus,id=cb", "-smp", str(cores), "-m", "512M", "-display", "none",
-                   "-monitor", "none", "-serial", "stdio", "-serial", f"unix:{uart1},server=on,wait=off" if uart1 else "null",
+                   "-monitor", "none", "-serial", "stdio", "-serial", uart1,
                    "-rtc", "base=2026-01-01,clock=vm", "-qmp", f"unix:{socket_path}", "-kernel", elf]
         for index, chip in zip(CHIP_INDICES, chips):
             command += ["-drive", f"if=mtd,format=raw,index={index},readonly=on,file={chip}"]

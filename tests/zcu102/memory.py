@@ -1,8 +1,8 @@
 """The memory map of the board's image, and its deepest stack from the compiler's call graph.
 
 The graph has one hole, calls through a pointer. Here is what stands behind each kind: the firmware calls the ports of
-the drivers, the drivers ask the clock, and the interrupt controller's driver calls the handlers, on a stack of its
-own."""
+the recorder, which calls those of the drivers and puts lines; the drivers ask the clock, and the interrupt controller's
+driver calls the handlers, on a stack of its own."""
 import re
 import subprocess
 import sys
@@ -14,11 +14,12 @@ from rules import CallGraph  # noqa: E402
 
 BUILD = Path("build/zcu102")
 IMAGE = BUILD / "landmass.elf"
-LAYERS = ("fixed", "firmware", "drivers", "bsp/zcu102")
+LAYERS = ("fixed", "firmware", "drivers", "bsp/zcu102", "bsp/record")
 KIB = 1024
 STACK_BUDGET = 8 * KIB
 INTERRUPT_FRAME = 272  # bsp/zcu102/vectors.S
-PORTS = {"receive", "send", "read_start", "read_poll", "acquire", "present", "next", "next_control"}
+PORTS = {"receive", "receive_2", "send", "send_frame", "read_start", "read_poll", "acquire", "present", "next",
+         "next_control", "tell_refusal"}
 HANDLERS = {"tick", "drv_uart_interrupt", "drv_can_interrupt"}
 
 
@@ -36,6 +37,8 @@ def behind_pointer(graph, caller):
     if caller.startswith(("drivers/", "drv_")):
         return {"zcu102_now_us"}
     ports = {name for name in graph.stack_bytes if plain(name) in PORTS}
+    if caller.startswith(("bsp/record/", "record_")):
+        return {name for name in ports if name.startswith("drivers/")} | {"bsp/zcu102/recording.c:put_line"}
     return {name for name in ports if name.startswith("drivers/")} if caller.startswith("tests/") else ports
 
 

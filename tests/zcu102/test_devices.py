@@ -85,7 +85,8 @@ def bezel(tap):
     pages = bench_test_pages()
     with tempfile.TemporaryDirectory() as folder:
         path = f"{folder}/uart1"
-        with machine.Machine(machine.BUILD / "landmass.elf", WORK, options=("-no-reboot",), uart1=path) as m:
+        with machine.Machine(machine.BUILD / "landmass.elf", WORK, options=("-no-reboot",),
+                             uart1=f"unix:{path},server=on,wait=off") as m:
             m.run(until="no usable database")
             before = m.dump("before")
             with socket.socket(socket.AF_UNIX) as line:

@@ -4,10 +4,14 @@ and the supervisor. The bench flies with what the board received, and must draw 
 When a frame arrives is not the same in every run: QEMU's two cores share one thread, and how long the one that sends
 waits for the one that draws depends, by a millisecond or so, on the host. That is why the bench is given the arrivals
 of the very run."""
+import os
+import pty
 import re
+import shutil
 import struct
 import subprocess
 import sys
+import time
 from pathlib import Path
 
 import fly
@@ -19,10 +23,13 @@ FLAG_DB, FLAG_TILE = 1 << 2, 1 << 3  # of lm/overlay.h
 SECONDS = 5
 SCRIPT = """\
 0   range 10
+0.4 picture first-lines
 1.9 picture ground-map
 2   sar 46.0 11.0 5
+2.7 picture patch-begun
 4.9 picture sar
 """
+PICTURES = SCRIPT.count("picture")
 SECTION_TILES, SECTIONS_MAX = 4, 32
 RECORD_BYTES = 17472
 
@@ -80,13 +87,29 @@ class Flights:
                     options=("-no-reboot", "-d", "guest_errors,unimp", "-D", out / "complaints"))
         for chip in chips:
             chip.unlink()
-        self.tap.ok(f"{name}: the board comes to the end of its flight", m.status == 0 and len(m.looks) == 2,
+        self.tap.ok(f"{name}: the board comes to the end of its flight", m.status == 0 and len(m.looks) == PICTURES,
                     *m.lines[-8:])
         bench = fly.bench_checksums(out, database, self.script, SECONDS)
         for picture, checksum in bench.items():
             self.tap.ok(f"{name}: {picture} is on the display as on the bench",
                         m.looks.get(picture) == (checksum, checksum), m.looks.get(picture), checksum)
+        self.replayed(name, database, m)
         return m
+
+    def replayed(self, name, database, m):
+        """What the board recorded on its second serial line is shown again by the bench, bit for bit."""
+        out, again = WORK / name, WORK / name / "again"
+        shutil.rmtree(again, ignore_errors=True)
+        sim = subprocess.run([machine.TOOLS.parent.parent / "landmass-sim", "--db", database, "--replay",
+                              out / "recording.log", "--png", again, "--every", "1"], capture_output=True, text=True)
+        said = re.search(r"checks of the glass (\d+), failed 0; departures 0; the recording has no end", sim.stdout)
+        self.tap.ok(f"{name}: the recording is shown again, and every check of it holds",
+                    sim.returncode == 0 and said and int(said.group(1)) > 100, sim.stdout, sim.stderr)
+        for picture, (checksum, _) in m.looks.items():
+            shown = again / f"frame-{m.value(picture) - 1:05}.png"  # numbered from 0
+            self.tap.ok(f"{name}: {picture} is in the replay as on the display",
+                        shown.exists() and machine.checksum(shown)[1] == checksum, shown)
+        shutil.rmtree(again, ignore_errors=True)
 
     def whole(self):
         m = self.fly("whole", self.image)
@@ -95,7 +118,7 @@ class Flights:
                     sent > 3000 and m.value("received") == sent and m.value("refused") == 0 and self.is_in_order())
         self.tap.ok("no step sees a frame that came after its time", m.value("early") == 0)
         self.tap.ok("nothing is lost or late", all(m.value(name) == 0 for name in (
-            "ring-overflowed", "fifo-overflowed", "lines-dropped", "steps-left-out", "read-errors", "tiles-corrupt")))
+            "ring-overflowed", "fifo-overflowed", "recorded-lines-lost", "lines-dropped", "steps-left-out", "read-errors", "tiles-corrupt")))
         bad = complaints(WORK / "whole/complaints")
         self.tap.ok("QEMU has no complaint about how the devices are used", not bad, *bad[:5])
         self.tap.ok("the page has no warning", m.value("flags") == 0)
@@ -115,6 +138,34 @@ class Flights:
         start = sent[0][0]
         return all(one[1] == other[1] and -1e-5 < other[0] - (one[0] - start) < 0.02
                    for one, other in zip(sent, received))
+
+    def kept(self):
+        """record.sh keeps a file for each start of the board, and no noise."""
+        whole = (WORK / "whole/recording.log").read_bytes()
+        folder = WORK / "kept"
+        shutil.rmtree(folder, ignore_errors=True)
+        board, line = pty.openpty()
+        with subprocess.Popen(["sh", "bsp/zcu102/record.sh", os.ttyname(line), folder], stdout=subprocess.PIPE) as pc:
+            listens = pc.stdout.readline()
+            content = b"\xff\x00\x80 no head\n" + whole + whole[:5000] + b"\n" + whole[:20000]
+            while content:
+                content = content[os.write(board, content[:1000]):]
+            self.wait_for(folder / "flight-00003-000.log", 20000)
+            os.close(line)
+            os.close(board)  # the cable is pulled
+        files = sorted(file.name for file in folder.iterdir())
+        self.tap.ok("what comes over the line is kept in a file for each start of the board",
+                    files == [f"flight-0000{n}-000.log" for n in (1, 2, 3)], listens, files)
+        self.tap.ok("without a bit of difference", (folder / files[0]).read_bytes() == whole
+                    and (folder / files[2]).read_bytes().startswith(whole[:19000]))
+
+    @staticmethod
+    def wait_for(file, most):
+        """The file stands still near its full length."""
+        for _ in range(100):
+            if file.exists() and file.stat().st_size > most - 100:
+                return
+            time.sleep(0.1)
 
     def damaged(self):
         m = self.fly("damaged tiles", damage_tiles(self.image))
@@ -148,6 +199,7 @@ def main():
         return tap.end()
     flights = Flights(tap)
     flights.whole()
+    flights.kept()
     flights.damaged()
     pages = [flights.hung(what, words) for what, words in
              (("step", "HUNG STEP"), ("display", "NO FRAME"), ("bus", "NO BUS"))]

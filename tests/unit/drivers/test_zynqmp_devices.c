@@ -392,7 +392,7 @@ TEST(a_time_that_the_watchdog_cannot_count_is_refused)
 
 TEST(bit_rates_are_met_within_a_percent)
 {
-    const uint32_t rates[] = {9600, 19200, 38400, 57600, 115200, 230400, 460800, 921600};
+    const uint32_t rates[] = {9600, 19200, 38400, 57600, 115200, 230400, 460800, 921600, 2000000};
     for (size_t i = 0; i < sizeof rates / sizeof *rates; i++) {
         struct drv_uart u;
         struct device d = {{0}, 0};
@@ -417,6 +417,51 @@ TEST(a_full_ring_of_the_uart_counts_what_it_loses)
         assert_int_equal(drv_uart_get(&u), 'x');
     }
     assert_int_equal(drv_uart_get(&u), -1);
+}
+
+/* A line of no speed: what is in the FIFO stays there until the test empties it. */
+enum { UART_IER = 0x08 / 4, UART_IDR = 0x0C / 4, UART_ISR = 0x14 / 4, UART_SR = 0x2C / 4 };
+enum { UART_FIFO = 0x30 / 4, UART_EMPTY = 1 << 3 };
+
+TEST(bytes_that_wait_are_sent_by_the_interrupt_in_their_order)
+{
+    uint8_t ring[128];
+    char text[130];
+    struct drv_uart u;
+    struct device d = {{0}, 0};
+    for (size_t i = 0; i < sizeof text; i++) {
+        text[i] = (char)i;
+    }
+    drv_uart_init(&u, d.registers, 100000000, 2000000);
+    assert_false(drv_uart_queue(&u, text, 1)); /* nothing was lent */
+    drv_uart_lend(&u, ring, sizeof ring);
+    assert_false(drv_uart_queue(&u, text, sizeof ring + 1));
+    assert_true(drv_uart_queue(&u, text, 100)); /* the first FIFO goes at once */
+    assert_int_equal(d.registers[UART_FIFO], 63);
+    assert_int_equal(d.registers[UART_IER], UART_EMPTY);
+    assert_int_equal(drv_uart_room(&u), sizeof ring - 36);
+    assert_true(drv_uart_queue(&u, text + 100, 30)); /* over the ring's end */
+    assert_int_equal(d.registers[UART_FIFO], 63);
+    assert_false(drv_uart_queue(&u, text, 63));
+    d.registers[UART_SR] = 1 << 1; /* nothing is received */
+    d.registers[UART_ISR] = UART_EMPTY;
+    drv_uart_interrupt(&u);
+    assert_int_equal(d.registers[UART_FIFO], 127);
+    d.registers[UART_SR] |= 1 << 4; /* full */
+    d.registers[UART_ISR] = UART_EMPTY;
+    drv_uart_interrupt(&u);
+    assert_int_equal(d.registers[UART_FIFO], 127);
+    d.registers[UART_SR] = 1 << 1;
+    d.registers[UART_ISR] = UART_EMPTY;
+    drv_uart_interrupt(&u);
+    assert_int_equal(d.registers[UART_FIFO], 129);
+    d.registers[UART_IDR] = 0;
+    d.registers[UART_ISR] = UART_EMPTY;
+    drv_uart_interrupt(&u);
+    assert_int_equal(d.registers[UART_IDR], UART_EMPTY);
+    assert_false(u.out.is_active);
+    assert_true(drv_uart_queue(&u, "x", 1));
+    assert_int_equal(d.registers[UART_FIFO], 'x');
 }
 
 /* ---- interrupts ---- */

@@ -33,6 +33,7 @@ struct flight {
     struct peer peer;
     struct handed handed;
     uint32_t next_picture, received_count;
+    uint32_t kept_at[SCENARIO_PICTURES_MAX]; /* pictures presented until then */
     uint32_t early;            /* frames that a step was given although they came after its time */
     uint64_t first_picture_us; /* since the board's reset */
     struct lm_can can;
@@ -111,6 +112,7 @@ static void keep_pictures(struct flight *f)
     while (f->next_picture < f->handed.header->pictures &&
            f->handed.pictures[f->next_picture].time_us <= f->z.step_us) {
         look_keep(&f->z.display, album[f->next_picture]);
+        f->kept_at[f->next_picture] = f->z.unit.count.frames;
         f->next_picture++;
     }
 }
@@ -142,6 +144,10 @@ static void report(struct flight *f)
     zcu102_print_value(u, "read-errors", unit->map.tiles.count.io_errors);
     zcu102_print_value(u, "tiles-corrupt", unit->map.tiles.count.corrupt);
     zcu102_print_value(u, "flags", unit->flags);
+    zcu102_print_value(u, "recorded-lines-lost", f->z.recording.lines_lost);
+    for (uint32_t i = 0; i < f->next_picture; i++) {
+        zcu102_print_value(u, f->handed.pictures[i].name, f->kept_at[i]);
+    }
     zcu102_print_value(u, "interrupts", f->z.irq.count.taken);
     zcu102_print_value(u, "stack-used", zcu102_stack_used());
 }
