@@ -16,6 +16,11 @@ static uint64_t clock_at(const struct lm_exercise *x, uint64_t now_us)
     return x->told_us + (since_us * x->rate_q8 >> 8);
 }
 
+uint64_t lm_exercise_clock(const struct lm_exercise *x, uint64_t now_us)
+{
+    return x->is_told ? clock_at(x, now_us) : now_us;
+}
+
 static bool is_silent(const struct lm_exercise *x, uint64_t now_us)
 {
     return now_us > x->heard_us && now_us - x->heard_us > x->stale_us;
@@ -62,7 +67,7 @@ void lm_exercise_take(struct lm_exercise *x, const struct lm_bus_event *event)
 
 void lm_exercise_at(struct lm_exercise *x, uint64_t now_us)
 {
-    const uint64_t next_us = x->is_told ? clock_at(x, now_us) : now_us;
+    const uint64_t next_us = lm_exercise_clock(x, now_us);
     const bool is_jitter = x->is_told && x->rate_q8 != 0 && next_us < x->time_us &&
                            x->time_us - next_us < LM_EXERCISE_STEP_US;
     x->is_stale = x->is_told && is_silent(x, now_us);

@@ -178,6 +178,22 @@ void lm_live_bus_take(struct lm_live_bus *b, const struct lm_bus_event *event, u
     add_part(b, event, part, motion_us);
 }
 
+/* A time before 0 becomes 0. */
+static uint64_t moved(uint64_t time_us, uint64_t from_us, uint64_t to_us)
+{
+    const uint64_t ago_us =
+        from_us - time_us; /* modulo 2^64: it may lie ahead, by a clock's jitter */
+    return time_us > from_us || ago_us < to_us ? to_us - ago_us : 0;
+}
+
+void lm_live_bus_step_clock(struct lm_live_bus *b, uint64_t from_us, uint64_t to_us)
+{
+    for (uint32_t i = 0; i < LM_LIVE_MAX; i++) {
+        b->live.target[i].motion_us = moved(b->live.target[i].motion_us, from_us, to_us);
+        b->set[i].motion_us = moved(b->set[i].motion_us, from_us, to_us);
+    }
+}
+
 void lm_live_bus_age(struct lm_live_bus *b, uint64_t now_us)
 {
     for (uint32_t i = 0; i < LM_LIVE_AGED_A_STEP; i++) {

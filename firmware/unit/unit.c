@@ -85,14 +85,28 @@ int lm_unit_init(struct lm_unit *u, const struct lm_board *board)
     return LM_OK;
 }
 
+/* Where the exercise's time steps, or begins, live targets stay where they are. Once in a step of
+ * the unit: a sender that steps in every frame must not take the time of a line. */
+static void take_exercise(struct lm_unit *u, const struct lm_bus_event *event)
+{
+    const uint64_t was_us = lm_exercise_clock(&u->exercise, event->time_us);
+    const uint32_t steps = u->exercise.count.steps;
+    const bool was_told = u->exercise.is_told;
+    lm_exercise_take(&u->exercise, event);
+    const bool has_stepped = u->exercise.count.steps != steps || u->exercise.is_told != was_told;
+    if (has_stepped && !u->is_clock_stepped) {
+        u->is_clock_stepped = true;
+        lm_live_bus_step_clock(&u->live, was_us, lm_exercise_clock(&u->exercise, event->time_us));
+    }
+}
+
 static void take_events(struct lm_unit *u, const struct lm_bus_event *events, uint32_t count)
 {
     for (uint32_t i = 0; i < count; i++) {
         lm_nav_take(&u->nav, &events[i]);
         lm_weather_bus_take(&u->weather.bus, &events[i]);
-        lm_exercise_take(&u->exercise, &events[i]);
-        lm_live_bus_take(&u->live, &events[i],
-                         u->exercise.is_told ? u->exercise.time_us : events[i].time_us);
+        take_exercise(u, &events[i]);
+        lm_live_bus_take(&u->live, &events[i], lm_exercise_clock(&u->exercise, events[i].time_us));
         lm_malfunction_bus_take(&u->malfunctions, &events[i]);
     }
 }
@@ -151,6 +165,7 @@ static uint32_t take_interface(struct lm_unit *u, uint8_t interface, uint32_t ro
 
 static void take_bus(struct lm_unit *u, uint64_t now_us)
 {
+    u->is_clock_stepped = false;
     const uint32_t room = take_interface(u, 0, LM_STEP_FRAMES, now_us);
     if (u->board->can_2) {
         (void)take_interface(u, 1, room, now_us);

@@ -41,6 +41,9 @@ void lm_exercise_init(struct lm_exercise *x, uint32_t seed);
  * a user's own table allows. */
 void lm_exercise_take(struct lm_exercise *x, const struct lm_bus_event *event);
 
+/* The exercise's time at a time of the unit's clock, by what was told until now. */
+uint64_t lm_exercise_clock(const struct lm_exercise *x, uint64_t now_us);
+
 /* Update time_us and is_stale as of `now_us`. What was told last counts: the clock runs on from it
  * at the told rate. It never runs back by less than LM_EXERCISE_STEP_US while it runs, but stands
  * until the told time has come. Call in every step. */

@@ -53,6 +53,10 @@ struct lm_live_bus {
  * fields change nothing. Cost: 80 instructions, 250 for the last value of a set. */
 void lm_live_bus_take(struct lm_live_bus *b, const struct lm_bus_event *event, uint64_t motion_us);
 
+/* The clock of what moves has stepped from one time to another: what was told holds at as long ago
+ * as before, so that no target jumps. Cost: 10 instructions for each of LM_LIVE_MAX. */
+void lm_live_bus_step_clock(struct lm_live_bus *b, uint64_t from_us, uint64_t to_us);
+
 /* Look at the ages of the next LM_LIVE_AGED_A_STEP targets, and remove those that are dead. Call it
  * once a step: each is looked at once in LM_LIVE_MAX / LM_LIVE_AGED_A_STEP steps, and is_silent is
  * of the last such round. Cost: 100 instructions. */

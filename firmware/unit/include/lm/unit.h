@@ -139,6 +139,7 @@ struct lm_unit {
     struct lm_unit_weather weather;
     struct lm_exercise exercise;
     struct lm_live_bus live;
+    bool is_clock_stepped; /* the exercise's, in this step of the unit */
     struct lm_malfunction_bus malfunctions;
 
     struct {

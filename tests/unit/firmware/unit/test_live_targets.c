@@ -2,6 +2,7 @@
 #include "hs/angle.h"
 #include "lm/unit.h"
 
+#include "bus_frames.h"
 #include "check.h"
 #include "glass_text.h"
 #include "scales.h"
@@ -516,5 +517,100 @@ TEST(the_unit_takes_256_live_targets_at_1_hz_and_loses_none)
     run(r, 0.2);
     assert_false(says_targets(r));
     r->unit.board = was;
+    free_rig(r);
+}
+
+/* ---- its time and the exercise's ---- */
+
+/* Frames of one step, and then the rig's bus. */
+static struct {
+    const struct lm_can *flight;
+    struct lm_can_frame frame[16];
+    uint32_t count, next;
+} told;
+
+static int receive_told(void *ctx, struct lm_can_frame *frame)
+{
+    (void)ctx;
+    if (told.next < told.count) {
+        *frame = told.frame[told.next++];
+        return 1;
+    }
+    return told.flight->receive(told.flight->ctx, frame);
+}
+
+static void tell_clock(const struct rig *r, int32_t ms)
+{
+    const uint8_t code = (uint8_t)told.count;
+    told.frame[told.count++] = bus_frame(1820, LM_CANAS_LONG, code, (uint32_t)ms, r->now_us);
+}
+
+/* Target 0, which moves at 1 m/s east and whatever the rig's time. */
+static void tell_target(struct rig *r)
+{
+    feed.rig = r;
+    for (uint32_t part = 0; part < 6; part++) {
+        told.frame[told.count++] = live_frame(part);
+    }
+}
+
+/* How far the target is reckoned to have come since it was told, in milliseconds. */
+static int32_t reckoned_ms(const struct rig *r)
+{
+    const struct lm_unit *u = &r->unit;
+    assert_int_equal(u->live.live.count, 1);
+    return (int32_t)((int64_t)(u->exercise.time_us - u->live.live.target[0].motion_us) / 1000);
+}
+
+static struct rig *tell_in(void)
+{
+    static struct lm_board board;
+    static struct lm_can can;
+    struct rig *r = fly_rig();
+    run(r, 1);
+    memset(&told, 0, sizeof told);
+    board = *r->unit.board;
+    can = *board.can;
+    can.receive = receive_told;
+    told.flight = board.can;
+    board.can = &can;
+    r->unit.board = &board;
+    return r;
+}
+
+TEST(a_target_of_the_step_in_which_the_clock_begins_stands_where_it_was_told)
+{
+    for (int is_clock_first = 0; is_clock_first < 2; is_clock_first++) {
+        struct rig *r = tell_in();
+        if (is_clock_first) {
+            tell_clock(r, 3600000);
+            tell_target(r);
+        } else {
+            tell_target(r);
+            tell_clock(r, 3600000);
+        }
+        run(r, 0.004);
+        assert_int_equal(r->unit.exercise.time_us / S, 3600);
+        assert_in_range(reckoned_ms(r) + 10, 0, 20);
+        free_rig(r);
+    }
+}
+
+TEST(a_target_stays_where_it_is_when_the_clock_steps)
+{
+    struct rig *r = tell_in();
+    tell_clock(r, 3600000);
+    tell_target(r);
+    run(r, 0.5);
+    assert_in_range(reckoned_ms(r), 490, 510);
+    tell_clock(r, 7200000); /* the instructor takes it forward, */
+    run(r, 0.1);
+    assert_in_range(reckoned_ms(r), 590, 610);
+    tell_clock(r, 1000); /* and back */
+    run(r, 0.1);
+    assert_in_range(reckoned_ms(r), 690, 710);
+    tell_clock(r, 1150); /* jitter moves it, as everything */
+    run(r, 0.1);
+    assert_in_range(reckoned_ms(r), 790, 900);
     free_rig(r);
 }
