@@ -5,10 +5,11 @@ $(O)/bin/tests/ios/virtual_panel: $(O)/tests/ios/virtual_panel.o $(PANEL_READER)
     $(LIB_firmware) $(LIB_fixed)
 $(O)/bin/tests/ios/virtual_panel: LDLIBS = $(PANEL_LIBS)
 
-TESTS += $(O)/bin/tests/ios/test_panel_pages
-$(O)/bin/tests/ios/test_panel_pages: $(addprefix $(O)/bin/landmass-,ios nav) $(O)/bin/tests/ios/virtual_panel \
+PANEL_TESTS := $(addprefix $(O)/bin/tests/ios/,test_panel_pages test_displays)
+TESTS += $(PANEL_TESTS)
+$(PANEL_TESTS): $(addprefix $(O)/bin/landmass-,ios nav sim) $(O)/bin/tests/ios/virtual_panel \
     $(O)/bin/tests/zcu102/golden_flash $(O)/ios/.made tests/ios/panel.mk
 	@mkdir -p $(@D)
-	@printf '#!/bin/sh\nexec sh tests/web/run.sh /usr/bin/python3 -B tests/ios/test_panel_pages.py\n' >$@
+	@printf '#!/bin/sh\nexec sh tests/web/run.sh /usr/bin/python3 -B tests/ios/%s.py\n' $(@F) >$@
 	@chmod +x $@
 endif

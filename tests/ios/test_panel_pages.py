@@ -1,17 +1,15 @@
 """A panel that flies, landmass-ios, and the pages of both in Chromium: a repeater and a debrief have the pictures that
 the panel's glass got, at the same steps. TAP.
 
-The panel is the program, loop and clock of landmass-panel (virtual_panel.c); its bus is what goes over the server's."""
+The panel (panel.py) hears what goes over the server's bus."""
 import pathlib
 import shutil
-import signal
 import subprocess
 import sys
-import threading
 
 from canvas import CANVAS_SUM, follow
+from panel import Panel
 from server import BUILD, Server
-from wire import Page
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "web"))
 import browser  # noqa: E402  pylint: disable=wrong-import-position
@@ -19,18 +17,6 @@ import tap  # noqa: E402  pylint: disable=wrong-import-position
 
 TMP = (BUILD / "tmp/ios_panel").resolve()
 FRAMES = 1000
-CONFIG = f"""database = {TMP}/scene.lmdb
-can = none
-can.controls = obey
-glass = none
-database.trust = any
-database.serial = none
-glass.picture = 512x512
-stick = none
-realtime.priority = 0
-realtime.memory = free
-record = {TMP}/recordings
-"""
 # What an instructor does beside the flight, by the page's own commands.
 WEATHER = """const c = station.commands;
 c.placeTarget({kind: 16, latitude: 46.05, longitude: 11, speedMs: 60, courseDeg: 90, heightM: null, rcsDbsm: 60,
@@ -44,36 +30,6 @@ station.commands.control(C.switch(2));
 station.commands.control(C.sector(0, 1));
 station.commands.mendAll();
 station.commands.malfunction(1, 10);"""
-
-
-class Panel:
-    """The panel between two ends of a pipe: frames of the server's bus go in, sums of pictures come out."""
-
-    def __init__(self, port):
-        (TMP / "panel.conf").write_text(CONFIG)
-        self.child = subprocess.Popen([BUILD / "bin/tests/ios/virtual_panel", TMP / "panel.conf", TMP / "panel.sums"],
-                                      stdin=subprocess.PIPE, stderr=(TMP / "panel.said").open("w"))
-        self.bus = Page(port)
-        threading.Thread(target=self.carry, daemon=True).start()
-
-    def carry(self):
-        """Frames that are new; what is past the firmware would take for new."""
-        try:
-            while True:
-                lines = [line for line in self.bus.message()[1].splitlines(keepends=True) if b" past " not in line]
-                self.child.stdin.write(b"".join(lines))
-                self.child.stdin.flush()
-        except (OSError, ValueError):
-            pass  # one of the two has ended
-
-    def sums(self):
-        """By number of the picture: the step that drew it, and its sum."""
-        rows = [line.split() for line in (TMP / "panel.sums").read_text().splitlines(keepends=True) if line.endswith("\n")]
-        return {int(number): {"steps": int(step), "sum": crc} for number, step, crc in rows}
-
-    def stop(self):
-        self.child.send_signal(signal.SIGTERM)
-        return self.child.wait(timeout=20)
 
 
 def act(b, station, words):
@@ -96,11 +52,8 @@ def the_repeater_has_every_picture_of_the_panel_at_its_step(b, panel):
     b.until(f"sums.size >= {FRAMES // 2}")
     act(b, station, SECTOR)
     b.until(f"sums.size >= {FRAMES}")
-    shown, wanted = dict(b.ask("[...sums]")), panel.sums()
-    wrong = sorted(n for n, of in shown.items() if wanted.get(n) != of)
-    assert not wrong, f"{len(wrong)} of {len(shown)} pictures differ, the first is {wrong[0]}: {shown[wrong[0]]}, {wanted.get(wrong[0])}"
-    numbers = sorted(shown)
-    assert numbers == list(range(numbers[0], numbers[0] + len(numbers))), "a picture was left out"
+    shown = dict(b.ask("[...sums]"))
+    panel.check(shown)
     different = len({of["sum"] for of in shown.values()})
     assert different > FRAMES // 2, f"only {different} different pictures"
     print(f"# {len(shown)} pictures compared, {different} of them different;", b.find("figures").text)
@@ -145,7 +98,7 @@ def main():
                     TMP / "nav.log", "--quiet"], check=True)
     with Server("--image", TMP / "scene.lmdb", "--site", BUILD / "ios", "--log", TMP / "nav.log", "--display",
                 f"left:20={TMP}/recordings") as server:
-        panel, b = Panel(server.port), None
+        panel, b = Panel(server.port, TMP, TMP / "scene.lmdb"), None
         try:
             b = browser.Browser(server.url)
             return tap.run(TESTS, b, panel)
