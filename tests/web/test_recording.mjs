@@ -86,13 +86,18 @@ test('a recording in parts is one', async () => {
 });
 
 test('back and on again by moments, within their memory, the pictures are the same', async () => {
-    const most = 40 << 20, moments = new Moments(most, 100000);
+    const most = 36 << 20, moments = new Moments(most, 100000);
     const replay = await opened(new LogLines(fileSource(`${tmp}/2.log`))), sums = sumsOf(2);
     do {
         moments.keep(replay);
     } while (replay.step());
     assert.ok(moments.bytes <= most && moments.all.length > 4, `${moments.all.length} moments, ${moments.bytes} bytes`);
     assert.ok(moments.apartUs > 100000, 'some were dropped');
+    const kinds = ['symbols', 'at', 'words'].map((part) => moments.all.flatMap(({pages}) => pages).filter((page) => page?.[part]).length);
+    assert.ok(kinds.every((count) => count > 20), `${kinds} pages of each kind`);
+    const {bytes} = moments;
+    moments.count();
+    assert.ok(moments.bytes <= bytes, `${moments.bytes} bytes, reckoned as ${bytes}`);
     for (const wanted of [150, 20, 149, 60, 2, sums.length]) {
         replay.restore(moments.last((m) => m.pictures < wanted));
         while (replay.value('pictures') < wanted) {

@@ -10,7 +10,7 @@
  * `read(offset, length)` returns a Uint8Array of that length, or throws. */
 import {Unit} from './unit.mjs';
 
-const BLOCK = 65536, BLOCKS_KEPT = 256; // 16 MiB of an image
+const BLOCK = 65536, BLOCKS_KEPT = 512; // 32 MiB of an image
 const OK = 0, IO_ERROR = -1;            // lm/status.h
 const OVER = -1, TORN = -2, BAD = -3;   // enum of exports.h
 const CEASED = [, 'it is as long as it may be', 'lines came faster than they could be written', // enum record_reason
@@ -297,10 +297,15 @@ export class Replay extends Unit {
     }
 }
 
-/* ---- pages of memory: null is all zero; of up to 256 different words, as pictures have, each is a
- * byte ---- */
+/* ---- pages of memory ----
+ *
+ * null is all zero. Where few symbols occur, as in pictures, a page is {symbols, places}: up to 256
+ * different words, or 128 different bytes, and for each its place among them, in as few bits as do.
+ * Where little differs from an earlier page, it is {base, at, words}: that page and what differs.
+ * Others are {words}. */
 
 const PAGE = 16384; // words: 64 KiB
+const WORDS_MOST = 256, BYTES_MOST = 128, DIFFERENT_MOST = 4096;
 
 function areSame(a, b) {
     for (let i = 0; i < a.length; i++) {
@@ -311,32 +316,80 @@ function areSame(a, b) {
     return true;
 }
 
-function pack(page) {
-    const places = new Map(), bytes = new Uint8Array(page.length);
-    for (let i = 0, last = ~page[0], place = 0; i < page.length; i++) {
-        if (page[i] !== last) {
-            last = page[i];
+const bitsFor = (symbols) => Math.ceil(Math.log2(symbols));
+
+/* The symbols that occur, and the place of each among them; null: more than so many occur. */
+function placesOf(all, most) {
+    const places = new Map(), bytes = new Uint8Array(all.length);
+    for (let i = 0, last = ~all[0], place = 0; i < all.length; i++) {
+        if (all[i] !== last) {
+            last = all[i];
             place = places.get(last) ?? places.size;
-            if (place === 256) {
-                return {words: page.slice(), size: 4 * page.length};
+            if (place === most) {
+                return null;
             }
             places.set(last, place);
         }
         bytes[i] = place;
     }
-    return {words: Int32Array.from(places.keys()), bytes, size: bytes.length + 4 * places.size};
+    return {symbols: all.constructor.from(places.keys()), places: squeeze(bytes, bitsFor(places.size))};
+}
+
+/* Numbers of so many bits, one after the other, the lowest bit first. */
+function squeeze(numbers, bits) {
+    const out = new Uint8Array(numbers.length * bits / 8);
+    for (let i = 0, at = 0, held = 0, count = 0; i < numbers.length; i++) {
+        held |= numbers[i] << count;
+        for (count += bits; count >= 8; count -= 8, held >>= 8) {
+            out[at++] = held;
+        }
+    }
+    return out;
+}
+
+function unpackPlaces({symbols, places}, to) {
+    const bits = bitsFor(symbols.length), mask = (1 << bits) - 1;
+    for (let i = 0, at = 0, held = 0, count = 0; i < to.length; i++) {
+        if (count < bits) {
+            held |= places[at++] << count;
+            count += 8;
+        }
+        to[i] = symbols[held & mask];
+        held >>= bits;
+        count -= bits;
+    }
+}
+
+/* A page beside an earlier one; null: too much differs. */
+function differenceOf(page, base) {
+    const at = new Uint16Array(DIFFERENT_MOST);
+    let count = 0;
+    for (let i = 0; i < page.length; i++) {
+        if (page[i] !== base.words[i]) {
+            if (count === DIFFERENT_MOST) {
+                return null;
+            }
+            at[count++] = i;
+        }
+    }
+    return {base, at: at.slice(0, count), words: Int32Array.from({length: count}, (_, i) => page[at[i]])};
+}
+
+const bytesOf = (words) => new Uint8Array(words.buffer, words.byteOffset, words.byteLength);
+
+function pack(page) {
+    const packed = placesOf(page, WORDS_MOST) ?? placesOf(bytesOf(page), BYTES_MOST) ?? {words: page.slice()};
+    return {...packed, size: (packed.words ?? packed.places).byteLength + (packed.symbols?.byteLength ?? 0)};
 }
 
 function unpack(page, to) {
     if (!page) {
         to.fill(0);
-    } else if (!page.bytes) {
-        to.set(page.words);
+    } else if (page.symbols) {
+        unpackPlaces(page, page.symbols instanceof Uint8Array ? bytesOf(to) : to);
     } else {
-        const {words, bytes} = page;
-        for (let i = 0; i < to.length; i++) {
-            to[i] = words[bytes[i]];
-        }
+        to.set((page.base ?? page).words);
+        page.at?.forEach((at, i) => { to[at] = page.words[i]; });
     }
 }
 
@@ -352,22 +405,39 @@ function hashOf(page) {
  * later ones are twice as far apart. Pages are shared where they are equal: with the moment before,
  * and, as those of the last pictures, within a moment. */
 export class Moments {
-    constructor(mostBytes, apartUs = 4e6) {
+    constructor(mostBytes, apartUs = 3e6) {
         this.mostBytes = mostBytes;
         this.apartUs = apartUs;
         this.all = [];
         this.mirror = null; // memory as of the moment kept last
         this.pages = [];    // of it
+        this.bases = [];    // by place the last page that was kept word for word
+        this.bytes = 0;
     }
 
-    get bytes() {
-        const pages = new Set(this.all.flatMap((moment) => moment.pages));
-        return [...pages].reduce((sum, page) => sum + (page?.size ?? 0), this.mirror?.byteLength ?? 0);
+    count() {
+        const pages = new Set(this.bases);
+        this.all.forEach((moment) => moment.pages.forEach((page) => pages.add(page).add(page?.base)));
+        this.bytes = [...pages].reduce((sum, page) => sum + (page?.size ?? 0), this.mirror.byteLength);
+    }
+
+    /* A page of a place, as it is kept. */
+    pack(page, n) {
+        const difference = this.bases[n] ? differenceOf(page, this.bases[n]) : null;
+        const packed = difference ? {...difference, size: difference.at.byteLength + difference.words.byteLength} : pack(page);
+        if (!packed.symbols && !packed.base) {
+            this.bases[n] = packed;
+        }
+        this.bytes += packed.size;
+        return packed;
     }
 
     copy(words) {
         const seen = new Map(), part = (all, n) => all.subarray(n * PAGE, (n + 1) * PAGE);
-        this.mirror ??= new Int32Array(words.length);
+        if (!this.mirror) {
+            this.mirror = new Int32Array(words.length);
+            this.bytes = this.mirror.byteLength;
+        }
         this.pages = Array.from({length: words.length / PAGE}, (_, n) => {
             const page = part(words, n), before = part(this.mirror, n);
             if (areSame(page, before)) {
@@ -375,7 +445,7 @@ export class Moments {
             }
             before.set(page);
             const hash = hashOf(page), twin = seen.get(hash);
-            const packed = twin && areSame(page, part(this.mirror, twin.n)) ? twin.packed : pack(page);
+            const packed = twin && areSame(page, part(this.mirror, twin.n)) ? twin.packed : this.pack(page, n);
             seen.set(hash, {n, packed});
             return packed;
         });
@@ -393,6 +463,7 @@ export class Moments {
         while (this.all.length > 2 && this.bytes > this.mostBytes) {
             this.all = this.all.filter((_, n) => n % 2 === 0);
             this.apartUs *= 2;
+            this.count();
         }
     }
 
