@@ -57,10 +57,7 @@ target ferry 42.0250 -29.0900 ground+6 20 swerling 1 42 moving 7 6000
 EOF
 
 say "Build the flash image and check every byte of it"
-"$bin"/landmass-db build --classes $classes --class-raster $out/classes.tif \
-    --reflectivity $out/reflectivity.tif --terrain $out/scene/terrain.tif --terrain $out/surroundings/terrain.tif \
-    --heights $out/scene/heights.tif --detail $out/scene/detail.txt --targets $out/targets.txt \
-    --title "built-in scene" --out $out/scene.lmdb
+sh host-sim/run/image.sh "$1" $out/surroundings/terrain.tif $out/scene.lmdb
 "$bin"/landmass-db verify $out/scene.lmdb
 
 # SECONDS PLACE CELL SIDE: five seconds for the patch, then its picture.
