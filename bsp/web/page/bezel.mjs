@@ -3,15 +3,16 @@
 
 const ROCKERS = ['GAIN', 'SYM', 'BRT', 'CON']; // enum lm_rocker
 const MARGIN = 10;                             // per cent of the bezel, on each side of the glass
-const KEY = 6, ROCKER = [7, 4];                // sizes, per cent
+const KEY = 6, ROCKER = [7, 4.6];              // sizes, per cent
+const ROCKER_AT = 2.6, ROCKER_APART = 6.4;     // so far that a finger meets one of the two
 
 /* Middle of button 1..28, per cent of the bezel from left and top. */
 function middleOf(number) {
     if (number > 20) {
         const rocker = Math.floor((number - 21) / 2), isLess = (number - 21) % 2;
         const isRight = rocker === 1 || rocker === 2, isLow = rocker >= 2;
-        const low = isLow ? 100 - MARGIN : 0;
-        return [isRight ? 100 - MARGIN / 2 : MARGIN / 2, low + 2.5 + isLess * 5];
+        const top = isLow ? 100 - ROCKER_AT - ROCKER_APART : ROCKER_AT;
+        return [isRight ? 100 - MARGIN / 2 : MARGIN / 2, top + isLess * ROCKER_APART];
     }
     const side = Math.floor((number - 1) / 5), along = (number - 1) % 5;
     const at = 50 + ((side < 2 ? along : 4 - along) - 2) * 0.15 * (100 - 2 * MARGIN);

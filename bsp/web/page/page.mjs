@@ -6,7 +6,7 @@ import {fileSource, httpSource} from './flash.mjs';
 import {Flight} from './flight.mjs';
 import {gamepadActs} from './gamepad.mjs';
 import {listen} from './keyboard.mjs';
-import {Player} from './player.mjs';
+import {calmly, Player} from './player.mjs';
 import {Tour} from './tour.mjs';
 import {Unit} from './unit.mjs';
 
@@ -228,6 +228,7 @@ class Page {
         find('pause').setAttribute('aria-pressed', 'false');
         this.say('');
         this.player = new Player(find('glass'), {
+            isWanted: calmly(),
             onOpened: () => this.player.play(1),
             onState: ({us, words, remark, problem, isOver}) => {
                 find('description').textContent = [words, remark].filter(Boolean).join('; ');

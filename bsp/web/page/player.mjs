@@ -4,12 +4,29 @@
  *     player.open(moduleBytes, {url: 'scene.lmdb'}, {file});     image and recording: a file or an address;
  *                                                                of a recording in parts a list of them
  *     player.play(1); player.pause(); player.toTime(us); player.byPictures(-1);
- *     player.follow(moduleBytes, {url: '/image'}, 'ws://...');   a recording that grows */
+ *     player.follow(moduleBytes, {url: '/image'}, 'ws://...');   a recording that grows
+ *
+ * isWanted() says of each picture that comes whether it is drawn; calmly() makes one. */
+const CALM_MS = 1000;
+
+/* A picture a second where the system asks for less motion, every one elsewhere. */
+export function calmly() {
+    const calm = matchMedia('(prefers-reduced-motion: reduce)');
+    let drawnMs = -Infinity;
+    return () => {
+        const now = performance.now(), isTime = !calm.matches || now - drawnMs >= CALM_MS;
+        drawnMs = isTime ? now : drawnMs;
+        return isTime;
+    };
+}
+
 export class Player {
-    constructor(canvas, {onState = () => {}, onError = () => {}, onPicture = () => {}, onLink = () => {}, onOpened = () => {}} = {}) {
+    constructor(canvas, {onState = () => {}, onError = () => {}, onPicture = () => {}, onLink = () => {}, onOpened = () => {},
+        isWanted = () => true} = {}) {
         this.canvas = canvas;
         this.context = canvas.getContext('2d', {alpha: false});
         this.speed = 0;
+        this.isWanted = isWanted;
         this.worker = new Worker(new URL('replay_worker.mjs', import.meta.url), {type: 'module'});
         const says = {state: onState, error: ({text}) => onError(text), link: onLink, opened: onOpened,
             picture: (picture) => onPicture(this.draw(picture))};
@@ -19,11 +36,14 @@ export class Player {
 
     draw(picture) {
         const {pixels, widthPx, heightPx} = picture;
+        this.us = picture.us;
+        if (!this.isWanted()) {
+            return picture;
+        }
         if (this.canvas.width !== widthPx || this.canvas.height !== heightPx) {
             Object.assign(this.canvas, {width: widthPx, height: heightPx});
         }
         this.context.putImageData(new ImageData(new Uint8ClampedArray(pixels), widthPx, heightPx), 0, 0);
-        this.us = picture.us;
         return picture;
     }
 

@@ -5,7 +5,7 @@
  * A picture that is not fresh must not look alive: whatever stops or lags is said over it. */
 import {SocketBus} from './web/bus.mjs';
 import {httpSource} from './web/flash.mjs';
-import {Player} from './web/player.mjs';
+import {calmly, Player} from './web/player.mjs';
 import {Unit} from './web/unit.mjs';
 
 const SILENT_MS = 1000, LATE_US = 700000, CHECK_MS = 200, AGAIN_MS = 2000, NEXT_MS = 15000;
@@ -26,6 +26,7 @@ export function trouble({isUp, silentMs, behindUs, lateUs, isOver, problem}) {
 
 class Repeater {
     async start() {
+        this.isWanted = calmly();
         this.module = await (await fetch('web/landmass.wasm')).arrayBuffer();
         this.image = new URL('image', document.baseURI).href;
         const station = await (await fetch('station.json')).json();
@@ -83,6 +84,7 @@ class Repeater {
             onLink: ({isUp}) => this.link(isUp),
             onPicture: (picture) => this.pictured(picture),
             onError: (text) => this.fail(text),
+            isWanted: this.isWanted,
         });
         this.player.follow(this.module, {url: this.image}, url, ['landmass-recording']);
     }
@@ -163,7 +165,7 @@ class Repeater {
                 bus.deliver(unit, nowUs + STEP_US);
                 unit.step(nowUs + STEP_US);
             }
-            if (unit.hasNewPicture()) {
+            if (unit.hasNewPicture() && this.isWanted()) {
                 context.putImageData(new ImageData(unit.paint(), SIDE, SIDE), 0, 0);
                 this.pictures++;
             }
