@@ -7,5 +7,5 @@ $(MODULE): $(call objs,bsp/web/board.c bsp/web/replay_board.c drivers/can/can_li
 $(O)/%.wasm: $(O)/bsp/web/memory.o $(LIB_firmware) $(LIB_fixed)
 	@mkdir -p $(@D)
 	$(call say,LINK,$@)
-	$(Q)$(LD_wasm) --no-entry --gc-sections --strip-all -z stack-size=65536 --stack-first $(LDFLAGS) \
+	$(Q)$(LD_wasm) --no-entry --gc-sections $(STRIP_wasm) -z stack-size=65536 --stack-first $(LDFLAGS) \
 	    $(filter %.o,$^) --whole-archive $(LIB_firmware) $(LIB_fixed) -o $@
