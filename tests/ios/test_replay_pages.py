@@ -148,6 +148,40 @@ def the_keyboard_alone_steps_plays_and_jumps(b):
     glass_is(b, 1)
 
 
+def each_button_acts(b):
+    debrief(b)
+    b.until("debrief.lastState?.isScouted")
+    jump(b, 10)
+    at = glass_is(b, 1)
+    for name, by in (("picture-on", 1), ("picture-back", 0)):
+        b.find(name).click()
+        b.until(f"debrief.picture === {at + by}")
+        assert glass_is(b, 1) == at + by
+    for name, low, high in (("on-10", 19.9, 20.3), ("back-10", 9.8, 10.3)):
+        b.find(name).click()
+        b.until(f"debrief.us > {low}e6 && debrief.us < {high}e6")
+    for name in ("mark-on", "mark-back"):
+        us = b.ask("debrief.us")
+        b.find(name).click()
+        b.until(f"debrief.us {'>' if name == 'mark-on' else '<'} {us} && debrief.marks.some((m) => Math.abs(m.us - debrief.us) < 60000)")
+    for name, speed in (("faster", 2), ("faster", 4), ("slower", 2)):
+        b.find(name).click()
+        assert b.ask("document.getElementById('play').textContent") == f"Play {speed}x (Space)"
+    us = b.ask("debrief.us")
+    b.find("play").click()
+    b.until(f"debrief.us > {us} + 2e6")
+    b.find("play").click()
+    b.until("debrief.player.speed === 0")
+    us = b.ask("debrief.us")
+    b.find("reverse").click()
+    b.until(f"debrief.us < {us} - 2e6")
+    b.find("reverse").click()
+    b.until("debrief.player.speed === 0")
+    glass_is(b, 1)
+    b.find("png").click()
+    b.until("debrief.saved?.type === 'image/png'")
+
+
 def what_happened_is_marked(b):
     debrief(b)
     b.until("debrief.lastState?.isScouted")
@@ -199,7 +233,7 @@ def nothing_is_asked_elsewhere_and_nothing_is_refused(b):
 TESTS = [the_repeater_shows_the_displays_pictures, a_repeater_that_stops_says_so, one_that_lags_says_so,
          a_worker_that_hangs_is_noticed_by_the_page, a_display_that_ended_is_said,
          without_a_recording_the_page_says_that_it_is_not_exact, jumps_show_the_pictures_of_their_time,
-         the_keyboard_alone_steps_plays_and_jumps, what_happened_is_marked,
+         the_keyboard_alone_steps_plays_and_jumps, each_button_acts, what_happened_is_marked,
          a_dropped_file_plays_and_a_bad_one_is_refused, pictures_and_video_come_out,
          nothing_is_asked_elsewhere_and_nothing_is_refused]
 

@@ -207,6 +207,47 @@ def a_target_is_changed_moved_and_removed(p, g):
     p.js("station.map.wholeMap()")
 
 
+def a_target_in_the_middle_of_the_map_has_the_form_and_its_signature(p, g):
+    bright(p)
+    p.center(NORTH)
+    frames = p.told(lambda: p.click("target-place"), *TARGET, 1816)
+    spot = g.middle(g.fly(frames))
+    assert spot and abs(spot[0] - 384) < 30, spot
+    clear_targets(p)
+    p.tab("displays")
+    p.fill("control-mode", 3)  # beacons
+    mode = p.told(lambda: p.click("control-sector"), 1536)
+    bright(p, kind=17)
+    replies = []
+    for code in (1, 13):
+        p.tab("targets")
+        p.fill("target-signature", code)
+        replies.append(p.told(lambda: p.click("target-place"), *TARGET, 1816))
+        clear_targets(p)
+    assert g.changed(g.fly(mode, replies[0]), than=(mode,)).any()
+    assert g.changed(g.fly(mode, replies[0]), than=(mode, replies[1])).any(), "beacons of two codes look the same"
+    p.fill("target-signature", 0)
+    p.tab("displays")
+    p.fill("control-mode", 0)
+
+
+def the_buttons_of_the_map_zoom_and_follow(p, _):
+    zoom = p.js("return station.map.zoom")
+    p.click("map-in")
+    assert p.js("return station.map.zoom") > zoom
+    p.click("map-out")
+    p.click("map-out")
+    assert p.js("return station.map.zoom") < zoom
+    p.click("map-whole")
+    assert abs(p.js("return station.map.zoom") - zoom) < 0.01
+    p.center(FARTHER)
+    p.js("station.map.isFollowing = false; document.getElementById('map-follow').checked = false")
+    p.click("map-follow")
+    p.b.until("Math.abs(station.map.centerPlace.latitude - station.world.ownAircraft().latitude) < 0.001")
+    p.click("map-follow")
+    assert p.js("return station.map.isFollowing") is False
+
+
 def all_targets_go_at_once(p, g):
     frames = place(p) + place(p, FARTHER)
     p.wait("targets.size === 2")
@@ -368,7 +409,12 @@ def cursor_steerpoint_and_patch_go_where_the_map_says(p, g):
     assert said[1519][0] == 1 and abs(said[1516][0] - latitude) < 30000, said
     p.center(SIDE)
     for name, ids in (("cursor", (1540, 1541)), ("steer", (1542, 1543)), ("patch", (1544, 1545, 1546))):
-        assert len(p.told(lambda: p.click(f"control-{name}-here"), *ids)) == len(ids)
+        here = p.told(lambda: p.click(f"control-{name}-here"), *ids)
+        assert len(here) == len(ids)
+    p.fill("control-cell", 20)
+    coarse = p.told(lambda: p.click("control-patch-here"), 1544, 1545, 1546)
+    assert g.changed(g.fly(coarse), than=(here,)).any(), "cells of 20 m look like those of 5 m"
+    p.fill("control-cell", 5)
     p.js("station.map.wholeMap()")
 
 
@@ -415,6 +461,9 @@ def the_clock_freezes_runs_jumps_and_has_a_seed(p, g):
     p.wait("exerciseMs() === 3660000")
     p.told(lambda: p.b.driver.find_element("css selector", "[data-by='-10']").click(), 1821, 1820)
     p.wait("exerciseMs() === 3650000")
+    p.told(lambda: p.b.driver.find_element("css selector", "[data-by='10']").click(), 1821, 1820)
+    p.told(lambda: p.b.driver.find_element("css selector", "[data-by='-60']").click(), 1821, 1820)
+    p.wait("exerciseMs() === 3600000")
     p.fill("clock-rate", 4)
     fast = p.told(lambda: p.click("clock-rate-tell"), 1821, 1820)
     p.wait("clock?.rate === 4")
@@ -623,6 +672,7 @@ def the_page_asks_no_other_server_and_has_no_error(p, _):
 
 TESTS = [a_target_is_placed_and_stands_on_the_glass, a_target_that_is_dragged_moves_on_the_glass,
          a_way_is_gone_with_its_speed, a_target_is_changed_moved_and_removed, all_targets_go_at_once,
+         a_target_in_the_middle_of_the_map_has_the_form_and_its_signature, the_buttons_of_the_map_zoom_and_follow,
          rain_is_placed_changed_dragged_and_removed, a_jammer_is_placed_and_fair_weather_ends_it,
          sea_and_wind_are_told, each_malfunction_breaks_the_picture_and_is_mended, a_dead_key_does_nothing,
          every_key_of_the_bezel_is_obeyed, the_picture_is_held_and_released, mode_range_width_and_gain_are_obeyed,

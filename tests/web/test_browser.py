@@ -198,6 +198,25 @@ def the_flight_turns_and_pauses_by_key(b):
     b.until(f"landmass.nowUs > {now} + 200000")
 
 
+def each_button_of_flight_cursor_and_knob_acts(b):
+    b.start()
+    flight = "[landmass.bus.bankDeg, landmass.bus.climbMs, landmass.bus.speedMs]"
+    for what, after in (("left", [-5, 0, 180]), ("right", [0, 0, 180]), ("right", [5, 0, 180]), ("up", [5, 5, 180]), ("down", [5, 0, 180]),
+                        ("down", [5, -5, 180]), ("faster", [5, -5, 190]), ("slower", [5, -5, 180]), ("level", [0, 0, 180])):
+        b.driver.find_element(By.CSS_SELECTOR, f"[data-fly='{what}']").click()
+        assert b.ask(flight) == after, (what, b.ask(flight))
+    for way, name, sign in (("0,1", "Longitude", 1), ("0,-1", "Longitude", -1), ("-1,0", "Latitude", 1), ("1,0", "Latitude", -1)):
+        before = value(b, f"cursor{name}")  # the aircraft flies east
+        key = b.driver.find_element(By.CSS_SELECTOR, f"[data-slew='{way}']")
+        ActionChains(b.driver).click_and_hold(key).pause(0.3).release().perform()
+        assert sign * (value(b, f"cursor{name}") - before) > 0, way
+        assert b.ask("landmass.deflection") == [0, 0]
+    b.driver.execute_script("landmass.told = []; const {calls} = landmass.unit; "
+                            "landmass.unit.calls = {...calls, knob: (n) => { landmass.told.push(n); calls.knob(n); }}")
+    b.find("knob").send_keys(Keys.ARROW_RIGHT, Keys.ARROW_RIGHT, Keys.ARROW_LEFT)
+    assert b.ask("landmass.told") == [100, 200, 100], b.ask("landmass.told")
+
+
 def a_log_flies_and_a_bad_one_is_refused(b):
     b.start()
     b.find("log").send_keys(str((SITE.parent / "bad.log").resolve()))
@@ -293,7 +312,8 @@ TESTS = [golden_pictures_are_those_of_the_pc, the_page_flies_and_asks_no_other_s
          the_cursor_moves_and_designate_draws_a_patch, a_gamepad_moves_the_cursor_flies_and_designates,
          a_finger_holds_a_key_and_flies, the_tour_sets_the_display_at_each_stop,
          the_glass_is_drawn_once_a_second_where_motion_is_not_wanted,
-         the_flight_beside_the_page_flies_and_a_missing_one_is_said, the_flight_turns_and_pauses_by_key, a_log_flies_and_a_bad_one_is_refused,
+         the_flight_beside_the_page_flies_and_a_missing_one_is_said, the_flight_turns_and_pauses_by_key,
+         each_button_of_flight_cursor_and_knob_acts, a_log_flies_and_a_bad_one_is_refused,
          a_recording_is_flown_again_and_one_of_another_image_is_refused, a_live_bus_flies,
          a_missing_image_is_said]
 
