@@ -153,6 +153,10 @@ def each_button_acts(b):
     b.until("debrief.lastState?.isScouted")
     jump(b, 10)
     at = glass_is(b, 1)
+    jump(b, 0)
+    assert b.ask("debrief.picture") == 0 and not any(b.ask(
+        "document.getElementById('glass').getContext('2d').getImageData(0, 0, 200, 200).data.filter((_, n) => n % 4 < 3)")), "light without a picture"
+    jump(b, 10)
     for name, by in (("picture-on", 1), ("picture-back", 0)):
         b.find(name).click()
         b.until(f"debrief.picture === {at + by}")

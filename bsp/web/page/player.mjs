@@ -43,6 +43,10 @@ export class Player {
         if (this.canvas.width !== widthPx || this.canvas.height !== heightPx) {
             Object.assign(this.canvas, {width: widthPx, height: heightPx});
         }
+        if (picture.picture === 0) { // before the display's first one
+            this.context.fillRect(0, 0, widthPx, heightPx);
+            return picture;
+        }
         this.context.putImageData(new ImageData(new Uint8ClampedArray(pixels), widthPx, heightPx), 0, 0);
         return picture;
     }
