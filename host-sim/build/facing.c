@@ -8,7 +8,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { CELLS = LM_TILE_CELLS, REACH = 3 };
+enum { CELLS = LM_TILE_CELLS, REACH = 3, BLOCKS_AROUND = 4 /* that a sum takes from, and one */ };
 
 /* UNSOURCED, chosen over Orihuela: a block's least size, and how much of the border must agree for
  * a direction. */
@@ -47,7 +47,42 @@ int build_facing_classes(struct build_facing *f, struct lm_classes *classes, int
 
 /* ---- survey ---- */
 
-static int allocate(struct build_facing *f, const struct image_area *area, uint8_t shift0)
+/* Keep those of blocks 0..*count - 1 that lie around `from`, for `length`. */
+static void keep_around(int64_t from, int64_t length, int shift, int *first, int *count)
+{
+    const int64_t low = (from >> shift) - BLOCKS_AROUND;
+    const int64_t high = ((from + length) >> shift) + BLOCKS_AROUND + 1;
+    const int64_t all = *count, begin = low < 0 ? 0 : low > all ? all : low;
+    *first = (int)begin;
+    *count = (int)((high < begin ? begin : high > all ? all : high) - begin);
+}
+
+static void narrow(struct build_facing *f, const struct image_area *within)
+{
+    const int64_t round = IMAGE_BAM_ROUND;
+    int64_t east = (uint32_t)(within->west - f->west);
+    east -= east >= round / 4 * 3 ? round : 0; /* as block_of counts */
+    keep_around(within->south - f->south, within->north - within->south, f->latitude_shift,
+                &f->row0, &f->rows);
+    if (east + within->width <= round / 4 * 3) {
+        keep_around(east, within->width, f->longitude_shift, &f->column0, &f->columns);
+    }
+}
+
+/* The ground of the blocks that are kept. */
+static struct image_area area_of(const struct build_facing *f)
+{
+    const int64_t south = f->south + ((int64_t)f->row0 << f->latitude_shift);
+    const int64_t width = (int64_t)f->columns << f->longitude_shift;
+    return (struct image_area){.south = south,
+                               .north = south + ((int64_t)f->rows << f->latitude_shift),
+                               .west =
+                                   f->west + (uint32_t)((int64_t)f->column0 << f->longitude_shift),
+                               .width = width < IMAGE_BAM_ROUND ? width : IMAGE_BAM_ROUND};
+}
+
+static int allocate(struct build_facing *f, const struct image_area *area, uint8_t shift0,
+                    const struct image_area *within)
 {
     int shift = shift0;
     while (ldexp(IMAGE_METRES_PER_BAM, shift) < block_m) {
@@ -62,7 +97,10 @@ static int allocate(struct build_facing *f, const struct image_area *area, uint8
     f->west = area->west;
     f->rows = (int)((area->north - area->south) >> f->latitude_shift) + 1;
     f->columns = (int)(area->width >> f->longitude_shift) + 1;
-    f->blocks = calloc((size_t)f->rows * (size_t)f->columns, sizeof *f->blocks);
+    if (within) {
+        narrow(f, within);
+    }
+    f->blocks = calloc((size_t)f->rows * (size_t)f->columns + 1, sizeof *f->blocks);
     return f->blocks ? 0 : hs_error("facings", "choose larger cells", "out of memory");
 }
 
@@ -73,8 +111,8 @@ static void block_of(const struct build_facing *f, double latitude_bam, double l
     const double round = 4294967296.0;
     double east = fmod(longitude_bam - (double)f->west, round);
     east += east < -0.25 * round ? round : 0;
-    *row = ldexp(latitude_bam - (double)f->south, -f->latitude_shift);
-    *column = ldexp(east, -f->longitude_shift);
+    *row = ldexp(latitude_bam - (double)f->south, -f->latitude_shift) - f->row0;
+    *column = ldexp(east, -f->longitude_shift) - f->column0;
 }
 
 /* Derivative of a Gaussian of 1.2 cells across, Gaussian along; i and k are -REACH..REACH. */
@@ -160,7 +198,7 @@ static int spread_blocks(struct build_facing *f)
 {
     static const float weight[5] = {1, 4, 6, 4, 1};
     const size_t count = (size_t)f->rows * (size_t)f->columns;
-    struct build_facing_sum *wide = calloc(count, sizeof *wide);
+    struct build_facing_sum *wide = calloc(count + 1, sizeof *wide);
     if (!wide) {
         return hs_error("facings", "choose larger cells", "out of memory");
     }
@@ -204,6 +242,7 @@ static int survey_bands(struct build_facing *f, const struct lm_classes *classes
 {
     struct hs_progress progress;
     hs_progress_begin(&progress, "facings", finest_entries(plan));
+    const struct image_area kept = area_of(f);
     uint64_t done = 0;
     int result = 0;
     for (int i = 0; i < plan->band_count; i++) {
@@ -213,7 +252,10 @@ static int survey_bands(struct build_facing *f, const struct lm_classes *classes
             const struct image_frame frame =
                 image_frame_of(plan->shift0, band->zone, band->row0 + k / band->columns,
                                (band->column0 + k % band->columns) & round);
-            result = survey_tile(f, classes, cover, &frame);
+            const struct image_area area = image_frame_area(&frame);
+            if (image_areas_meet(&area, &kept)) {
+                result = survey_tile(f, classes, cover, &frame);
+            }
             hs_progress_update(&progress, ++done);
         }
     }
@@ -222,14 +264,15 @@ static int survey_bands(struct build_facing *f, const struct lm_classes *classes
 }
 
 int build_facing_survey(struct build_facing *f, const struct lm_classes *classes,
-                        const struct resample_cover *cover, const struct build_plan *plan)
+                        const struct resample_cover *cover, const struct build_plan *plan,
+                        const struct image_area *within)
 {
     if (f->facings == 0 || !cover->classes.dataset) {
         return 0;
     }
     struct resample_cover alone = *cover;
     alone.reflectivity.dataset = alone.heights.dataset = NULL;
-    if (allocate(f, &cover->area, plan->shift0) != 0) {
+    if (allocate(f, &cover->area, plan->shift0, within) != 0) {
         return -1;
     }
     return survey_bands(f, classes, &alone, plan) != 0 ? -1 : spread_blocks(f);

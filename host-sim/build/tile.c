@@ -169,6 +169,7 @@ static void count_cells(struct build_context *b, const struct image_frame *f,
                         const struct build_tile *t, const bool is_below[4])
 {
     struct build_counts *n = &b->counts;
+    double area_m2[LM_DB_CLASSES] = {0}, land_area_m2 = 0, land_metres_m2 = 0;
     for (int r = 0; r < CELLS; r++) {
         const double area = cell_area_m2(f, r);
         for (int c = 0; c < CELLS; c++) {
@@ -177,14 +178,19 @@ static void count_cells(struct build_context *b, const struct image_frame *f,
                 continue;
             }
             n->cells[k]++;
-            n->area_m2[k] += area;
+            area_m2[k] += area;
             n->cells_beyond_terrain += !has_terrain(&t->posts, r, c);
             if (b->classes.entry[k].kind != LM_KIND_WATER) {
-                n->land_area_m2 += area;
-                n->land_metres_m2 += area * centre_metres(&t->posts, r, c);
+                land_area_m2 += area;
+                land_metres_m2 += area * centre_metres(&t->posts, r, c);
             }
         }
     }
+    for (int k = 0; k < LM_DB_CLASSES; k++) {
+        build_sum_add(&n->area_m2[k], area_m2[k]);
+    }
+    build_sum_add(&n->land_area_m2, land_area_m2);
+    build_sum_add(&n->land_metres_m2, land_metres_m2);
 }
 
 /* Take every second post of the tile below. */

@@ -80,9 +80,14 @@ static double ground_m(const struct build_towns_tile *t, int r, int c)
            256;
 }
 
+/* Sums over one tile. */
+struct share {
+    double area, structure_power, other_power;
+};
+
 /* The law of illumination for rays that all come in at the same angle. The quarter of the line that
  * is met first only raises the horizon. */
-static void add_line(struct build_towns *towns, int level, const struct line *l)
+static void add_line(struct share *share, const struct line *l)
 {
     const double flat = l->cell_m * grazing_tangent;
     const double edge = power_of_db(lm_radar_default.illumination.edge_structure_db_q8 / 256.0);
@@ -101,9 +106,9 @@ static void add_line(struct build_towns *towns, int level, const struct line *l)
             const double power = weight * rise / flat *
                                  power_of_db(image_gamma_db(image_cell_gamma(cell))) *
                                  (stands && !was_structure ? edge : 1);
-            *(stands ? &towns->structure_power[level] : &towns->other_power[level]) += power;
+            *(stands ? &share->structure_power : &share->other_power) += power;
         }
-        towns->area[level] += weight;
+        share->area += weight;
         was_structure = stands;
     }
 }
@@ -111,15 +116,18 @@ static void add_line(struct build_towns *towns, int level, const struct line *l)
 static void add_table(struct build_towns *towns, const struct build_towns_tile *tile,
                       const struct lm_classes *classes)
 {
+    double power = 0, count = 0;
     for (int i = 0; i < CELLS * CELLS; i++) {
         const uint16_t cell = tile->cells[i / CELLS][i % CELLS];
         if (is_structure(classes, cell)) {
             const double weight = (double)tile->built[i / CELLS][i % CELLS];
-            towns->table_power +=
+            power +=
                 weight * power_of_db(classes->entry[image_cell_class(cell)].gamma_db_q8 / 256.0);
-            towns->table_count += weight;
+            count += weight;
         }
     }
+    build_sum_add(&towns->table_power, power);
+    build_sum_add(&towns->table_count, count);
 }
 
 static bool has_built(const struct build_towns_tile *tile)
@@ -135,6 +143,7 @@ static bool has_built(const struct build_towns_tile *tile)
 void build_towns_add(struct build_towns *t, int level, const struct build_towns_tile *tile,
                      const struct lm_classes *classes, double north_m, double east_m)
 {
+    struct share share = {0};
     if (!has_built(tile)) {
         return;
     }
@@ -144,20 +153,38 @@ void build_towns_add(struct build_towns *t, int level, const struct build_towns_
                                       {tile, classes, north_m, 0, i, 1, 0},
                                       {tile, classes, north_m, CELLS - 1, i, -1, 0}};
         for (int k = 0; k < 4; k++) {
-            add_line(t, level, &lines[k]);
+            add_line(&share, &lines[k]);
         }
     }
+    build_sum_add(&t->area[level], share.area);
+    build_sum_add(&t->structure_power[level], share.structure_power);
+    build_sum_add(&t->other_power[level], share.other_power);
     if (level == 0) {
         add_table(t, tile, classes);
     }
 }
 
+void build_towns_join(struct build_towns *t, const struct build_towns *other)
+{
+    for (int level = 0; level < LM_DB_LODS_MAX; level++) {
+        build_sum_join(&t->area[level], &other->area[level]);
+        build_sum_join(&t->structure_power[level], &other->structure_power[level]);
+        build_sum_join(&t->other_power[level], &other->other_power[level]);
+    }
+    build_sum_join(&t->table_power, &other->table_power);
+    build_sum_join(&t->table_count, &other->table_count);
+}
+
 double build_towns_gain_db(const struct build_towns *t, int level)
 {
-    if (t->table_count <= 0 || t->structure_power[level] <= 0) {
+    const double count = build_sum_value(&t->table_count);
+    const double power = build_sum_value(&t->structure_power[level]);
+    if (count <= 0 || power <= 0) {
         return 0;
     }
-    const double wanted = t->table_power / t->table_count * t->area[level] - t->other_power[level];
-    const double gain = wanted > 0 ? 10 * log10(wanted / t->structure_power[level]) : -gain_most_db;
+    const double wanted =
+        build_sum_value(&t->table_power) / count * build_sum_value(&t->area[level]) -
+        build_sum_value(&t->other_power[level]);
+    const double gain = wanted > 0 ? 10 * log10(wanted / power) : -gain_most_db;
     return fmin(gain_most_db, fmax(-gain_most_db, gain));
 }

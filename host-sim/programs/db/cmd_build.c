@@ -509,7 +509,7 @@ static int open_inputs(struct build_context *b, const struct settings *s)
     if (s->detail && build_detail_read(&b->detail, s->detail, &detail) != 0) {
         return -1;
     }
-    if (build_facing_survey(&b->facing, &b->classes, &b->cover, &b->plan) != 0) {
+    if (build_facing_survey(&b->facing, &b->classes, &b->cover, &b->plan, NULL) != 0) {
         return -1;
     }
     return choose_heights(b);
@@ -672,8 +672,9 @@ static void fill_header(struct lm_image_header *h, const struct build_context *b
                         const struct settings *s, const uint32_t centre[2])
 {
     const struct build_counts *n = &b->counts;
+    const double land_m2 = build_sum_value(&n->land_area_m2);
     const double mean_m =
-        n->land_area_m2 > 0 ? n->land_metres_m2 / n->land_area_m2 : s->sea_level_m;
+        land_m2 > 0 ? build_sum_value(&n->land_metres_m2) / land_m2 : s->sea_level_m;
     h->mean_elevation_m_q6 = (int32_t)lround(mean_m * 64.0);
     h->geoid_m_q6 = geoid_q6(b, s, centre);
     h->sensor = (uint8_t)b->sensor;
@@ -822,10 +823,10 @@ static void print_classes(const struct build_context *b)
     hs_report_array("classes");
     for (int k = 0; k < b->table.count; k++) {
         uint64_t of_class = n->cells[k];
-        double area_m2 = n->area_m2[k];
+        double area_m2 = build_sum_value(&n->area_m2[k]);
         for (int i = 0; b->facing.first[k] > 0 && i < b->facing.facings; i++) {
             of_class += n->cells[b->facing.first[k] + i];
-            area_m2 += n->area_m2[b->facing.first[k] + i];
+            area_m2 += build_sum_value(&n->area_m2[b->facing.first[k] + i]);
         }
         printf("class %-2d %-16s %12" PRIu64 " cells  %12.3f km2", k, b->table.items[k].name,
                of_class, area_m2 * 1e-6);

@@ -21,7 +21,8 @@ struct build_facing {
      * of border lengths. */
     struct build_facing_sum {
         float cos4, sin4, length;
-    } * blocks; /* owned */
+    } * blocks;        /* owned */
+    int row0, column0; /* of the first block, in blocks from the corner of the class raster */
     int rows, columns;
     int64_t south;
     uint32_t west;
@@ -32,10 +33,12 @@ struct build_facing {
  * Returns the classes in use then. */
 int build_facing_classes(struct build_facing *f, struct lm_classes *classes, int count);
 
-/* Survey the borders in the class raster; after build_facing_classes. Returns 0, or -1 with the
- * error reported. */
+/* Survey the borders in the class raster; after build_facing_classes. `within` is where facings
+ * will be asked for, NULL: everywhere. What is found at a place there does not depend on it.
+ * Memory: 24 bytes for each 60 m square there. Returns 0, or -1 with the error reported. */
 int build_facing_survey(struct build_facing *f, const struct lm_classes *classes,
-                        const struct resample_cover *cover, const struct build_plan *plan);
+                        const struct resample_cover *cover, const struct build_plan *plan,
+                        const struct image_area *within);
 /* Harmless on a zeroed struct. */
 void build_facing_free(struct build_facing *f);
 

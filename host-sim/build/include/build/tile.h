@@ -3,6 +3,7 @@
 #define BUILD_TILE_H
 
 #include "build/detail.h"
+#include "build/exact_sum.h"
 #include "build/facing.h"
 #include "build/plan.h"
 #include "build/towns.h"
@@ -23,14 +24,15 @@ struct build_rule {
     double steep_tangent;   /* steeper than this is `steep` */
 };
 
+/* What was made, in numbers that do not depend on the order of the tiles. */
 struct build_counts {
     uint64_t cells[LM_DB_CLASSES]; /* as generated, each once, at whatever level */
-    double area_m2[LM_DB_CLASSES];
-    uint64_t cells_by_rule;              /* of these, by the terrain's rule */
-    uint64_t cells_beyond_terrain;       /* of these, on elevations of the terrain's edge */
-    double land_area_m2, land_metres_m2; /* for the mean elevation */
-    uint64_t detail_items;               /* of tiles that are in the image */
-    uint64_t heights_cut;                /* samples of structures and trees above 1,000 m */
+    struct build_sum area_m2[LM_DB_CLASSES];
+    uint64_t cells_by_rule;        /* of these, by the terrain's rule */
+    uint64_t cells_beyond_terrain; /* of these, on elevations of the terrain's edge */
+    struct build_sum land_area_m2, land_metres_m2; /* for the mean elevation */
+    uint64_t detail_items;                         /* of tiles that are in the image */
+    uint64_t heights_cut; /* samples of structures and trees above 1,000 m */
 };
 
 struct build_context {

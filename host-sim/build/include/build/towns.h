@@ -9,6 +9,7 @@
 #ifndef BUILD_TOWNS_H
 #define BUILD_TOWNS_H
 
+#include "build/exact_sum.h"
 #include "hs/class_table.h"
 #include "image/grid.h"
 #include "lm/db.h"
@@ -17,10 +18,10 @@
 
 /* Sums over the built-up area of an image, by level. Zero at first. */
 struct build_towns {
-    double area[LM_DB_LODS_MAX];
-    double structure_power[LM_DB_LODS_MAX]; /* times area; flat ground of 0 dB has 1 */
-    double other_power[LM_DB_LODS_MAX];
-    double table_power, table_count; /* of the table's gammas, over cells of structures */
+    struct build_sum area[LM_DB_LODS_MAX];
+    struct build_sum structure_power[LM_DB_LODS_MAX]; /* times area; flat ground of 0 dB has 1 */
+    struct build_sum other_power[LM_DB_LODS_MAX];
+    struct build_sum table_power, table_count; /* of the table's gammas, over cells of structures */
 };
 
 /* What the budget sees of a tile. */
@@ -39,6 +40,9 @@ void build_towns_mark(const uint16_t cells[LM_TILE_CELLS][LM_TILE_CELLS],
 /* Add a tile of a level, looked at along its rows and columns from four sides. */
 void build_towns_add(struct build_towns *t, int level, const struct build_towns_tile *tile,
                      const struct lm_classes *classes, double north_m, double east_m);
+
+/* Add what another part of the image has. */
+void build_towns_join(struct build_towns *t, const struct build_towns *other);
 
 /* Gain of structures at a level, dB; 0 where nothing is built-up. */
 double build_towns_gain_db(const struct build_towns *t, int level);

@@ -52,7 +52,7 @@ static double gain_of(const struct ground *g, double north_m, double east_m)
 {
     const struct lm_classes classes = two_classes();
     const struct build_towns_tile tile = {g->cells, g->posts_q6, g->built};
-    struct build_towns towns = {.table_count = 0};
+    struct build_towns towns = {.table_count = {0}};
     build_towns_add(&towns, 0, &tile, &classes, north_m, east_m);
     return build_towns_gain_db(&towns, 0);
 }
