@@ -26,7 +26,7 @@ void build_manifest_head(FILE *out, const struct build_manifest *m)
     }
 }
 
-static int hash_file(const char *path, uint64_t *bytes, char digest[IMAGE_SHA256_TEXT])
+int build_manifest_hash(const char *path, uint64_t *bytes, char digest[IMAGE_SHA256_TEXT])
 {
     VSILFILE *file = VSIFOpenL(path, "rb");
     uint8_t *chunk = malloc(CHUNK_BYTES);
@@ -51,7 +51,7 @@ int build_manifest_file(FILE *out, const char *role, const char *path)
 {
     uint64_t bytes;
     char digest[IMAGE_SHA256_TEXT];
-    if (hash_file(path, &bytes, digest) != 0) {
+    if (build_manifest_hash(path, &bytes, digest) != 0) {
         return hs_error(path, "check that it is still there", "cannot be read for the manifest");
     }
     fprintf(out, "input: %s %s %" PRIu64 " %s\n", role, CPLGetFilename(path), bytes, digest);

@@ -75,7 +75,8 @@ static int open_source(struct source *s, const char *path, const struct terrain_
                         "holds no band");
     }
     if (read_units(m, options) != 0 ||
-        db_plausible_terrain(m->band, path, fabs(m->scale), options->are_trusted) != 0) {
+        (!options->are_judged &&
+         db_plausible_terrain(m->band, path, fabs(m->scale), options->are_trusted) != 0)) {
         return -1;
     }
     m->width = GDALGetRasterXSize(m->dataset);
@@ -159,7 +160,7 @@ static int finish_layer(struct terrain_layer *layer, const struct terrain_option
         return hs_error(path, "check its geotransform and CRS with gdalinfo",
                         "its middle lies nowhere on Earth");
     }
-    return terrain_voids_fill(&layer->voids, &layer->mosaic);
+    return options->have_no_voids ? 0 : terrain_voids_fill(&layer->voids, &layer->mosaic);
 }
 
 static int make_layers(struct terrain *t, struct source *sources, int count)
@@ -299,7 +300,9 @@ int terrain_open(struct terrain *t, const struct hs_list *paths,
     }
     if (result == 0) {
         say_heights(sources, paths->count);
-        result = terrain_overlaps_judge(sources, paths->count, options->are_trusted);
+        result = options->are_judged
+                     ? 0
+                     : terrain_overlaps_judge(sources, paths->count, options->are_trusted);
     }
     if (result == 0) {
         result = make_layers(t, sources, paths->count);

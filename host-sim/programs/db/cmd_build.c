@@ -1,10 +1,11 @@
+#include "build_job.h"
 #include "commands.h"
 
 #include "build/geoid.h"
 #include "build/heights.h"
 #include "build/manifest.h"
-#include "build/pyramid.h"
-#include "build/targets.h"
+#include "build/part.h"
+#include "build/work_sources.h"
 #include "bus/table_text.h"
 #include "gis/gdal_start.h"
 #include "gis/sensor_tag.h"
@@ -13,7 +14,6 @@
 #include "hs/options.h"
 #include "hs/report.h"
 #include "image/codes.h"
-#include "lm/bus_record.h"
 #include "lm/radar_record.h"
 #include "lm/sensor.h"
 #include "radar/text.h"
@@ -23,23 +23,8 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/resource.h>
 #include <time.h>
-
-struct settings {
-    const char *classes, *radar, *bus_table, *class_raster, *reflectivity, *heights, *targets,
-        *detail;
-    const char *map, *unknown_codes, *terrain_unit, *terrain_datum, *geoid_grid;
-    struct hs_list terrain;
-    double cell_m;
-    long shift0, seed;
-    const char *centre, *title, *out;
-    int compression;        /* enum image_compression */
-    int sensor;             /* enum hs_sensor; -1: as the reflectivity says, or X */
-    uint32_t centre_bam[2]; /* latitude, longitude; when `centre` is given */
-    const char *land_class, *water_class, *steep_class;
-    double sea_level_m, steep_degrees, geoid_m;
-    bool is_flat, voids_are_sea, may_cut_heights, ignores_names, trusts_inputs;
-};
 
 static const struct hs_usage usage = {
     "build", "make the database image from classes, reflectivity and terrain",
@@ -58,17 +43,62 @@ static const struct hs_usage usage = {
     "\n"
     "The same inputs and options always give the same bytes."};
 
+static const struct hs_usage plan_usage = {
+    "plan", "cut an image into shards that are made apart",
+    "Takes the options of `build` and writes a plan, a text: which files the image is made from, "
+    "with their digests,\n"
+    "and shards that need a bounded memory each. `landmass-db build --plan P --shard N` makes one, "
+    "on any machine that\n"
+    "sees the files under the same names, and `landmass-db join` makes the image of them: the same "
+    "bytes as `build` makes\n"
+    "in one go. Each shard has a key. As long as that is the same, so are its tiles, and it need "
+    "not be made again.\n"
+    "\n"
+    "Reads every input, some of them twice."};
+
 #define OPTION(name, kind, field, low, high, value, help)                                          \
     {                                                                                              \
         name, kind, &s->field, low, high, value, help, false                                       \
     }
 
-/* Read the command line. Returns true when the build shall go on; see hs_options_read. */
-static bool read_settings(struct settings *s, int argc, char **argv, int *exit_code)
+/* Keep the options of a command line that a plan shall repeat. */
+static int keep_options(struct build_work *work, const struct hs_option *options, size_t count,
+                        int argc, char **argv)
+{
+    static const char *const own[] = {"out", "json", "shards", "memory"};
+    for (int i = 1; i < argc; i++) {
+        const char *name = argv[i] + 2;
+        const size_t length = strcspn(name, "=");
+        bool is_flag = false, is_own = false;
+        for (size_t k = 0; k < count; k++) {
+            is_flag = is_flag || (options[k].kind == HS_FLAG && strlen(options[k].name) == length &&
+                                  strncmp(options[k].name, name, length) == 0);
+        }
+        for (size_t k = 0; k < sizeof own / sizeof own[0]; k++) {
+            is_own = is_own || (strlen(own[k]) == length && strncmp(own[k], name, length) == 0);
+        }
+        const bool is_whole = is_flag || name[length] == '=';
+        const char *value = is_whole ? "" : argv[++i];
+        if (is_own) {
+            continue;
+        }
+        if (work->option_count == BUILD_WORK_OPTIONS_MAX ||
+            asprintf(&work->options[work->option_count], "--%s%s%s", name, is_whole ? "" : "=",
+                     value) < 0 ||
+            strchr(work->options[work->option_count++], '\n')) {
+            return hs_error(argv[i], "give fewer options, without line breaks",
+                            "cannot be kept in a plan");
+        }
+    }
+    return 0;
+}
+
+bool build_job_read(struct build_settings *s, enum build_command command, struct build_work *work,
+                    int argc, char **argv, int *exit_code)
 {
     const struct hs_option options[] = {
-        {"classes", HS_INPUT, &s->classes, 0, 0, "FILE", "class table (docs/classifier.md)", true},
-        {"out", HS_OUTPUT, &s->out, 0, 0, "FILE.lmdb", "the image to write", true},
+        {"classes", HS_INPUT, &s->classes, 0, 0, "FILE", "class table (docs/classifier.md)",
+         command != BUILD_WHOLE},
         {"terrain", HS_INPUTS, &s->terrain, 0, 0, "DEM", "elevation model; may be given again",
          false},
         OPTION("flat", HS_FLAG, is_flat, 0, 0, NULL,
@@ -159,9 +189,32 @@ static bool read_settings(struct settings *s, int argc, char **argv, int *exit_c
         HS_NEEDS_ROW("steep-class", "terrain"),
         HS_NEEDS_ROW("steep-degrees", "steep-class"),
         HS_CLASHES_ROW("geoid", "geoid-grid"),
+        /* The rest is not for every command. */
+        {"out", HS_OUTPUT, &s->out, 0, 0, command == BUILD_PLAN ? "FILE.plan" : "FILE.lmdb",
+         command == BUILD_PLAN ? "the plan to write" : "the image to write, or the part", true},
+        {command == BUILD_PLAN ? "shards" : "shard", HS_INTEGER,
+         command == BUILD_PLAN ? &s->shards : &s->shard, command == BUILD_PLAN ? 1 : 0,
+         BUILD_SHARDS_MAX, "N",
+         command == BUILD_PLAN ? "at least so many" : "make this shard of --plan, from 0 on",
+         false},
+        {command == BUILD_PLAN ? "memory" : "plan", command == BUILD_PLAN ? HS_INTEGER : HS_INPUT,
+         command == BUILD_PLAN ? (void *)&s->memory_mib : (void *)&s->plan,
+         command == BUILD_PLAN ? 256 : 0, command == BUILD_PLAN ? 65536 : 0,
+         command == BUILD_PLAN ? "MIB" : "FILE.plan",
+         command == BUILD_PLAN
+             ? "that a shard may need"
+             : "plan of `landmass-db plan`: it has all other options, and --shard "
+               "says what to make",
+         false},
+        HS_CLASHES_ROW("plan", "classes|terrain|flat|class-raster"),
+        HS_NEEDS_ROW("plan", "shard"),
+        HS_NEEDS_ROW("shard", "plan"),
     };
-    return hs_options_read(&usage, options, sizeof options / sizeof options[0], argc, argv,
-                           exit_code);
+    const size_t all = sizeof options / sizeof options[0];
+    const size_t count = command == BUILD_WHOLE ? all : command == BUILD_PLAN ? all - 3 : all - 6;
+    const struct hs_usage *const help = command == BUILD_PLAN ? &plan_usage : &usage;
+    return hs_options_read(help, options, count, argc, argv, exit_code) &&
+           (!work || keep_options(work, options, count, argc, argv) == 0);
 }
 
 static int usage_error(const char *option, const char *cause)
@@ -181,7 +234,7 @@ static int parse_centre(const char *text, uint32_t centre[2])
     return 0;
 }
 
-static int check_settings(struct settings *s)
+int build_job_check(struct build_settings *s)
 {
     if (s->shift0 > 0 && s->shift0 < LM_DB_SHIFT_MIN) {
         return usage_error("--shift0", "must be 4 to 20");
@@ -207,7 +260,7 @@ static int named_class(const struct db_class_table *table, const char *option, c
     return k;
 }
 
-static int make_rule(struct build_rule *rule, const struct settings *s,
+static int make_rule(struct build_rule *rule, const struct build_settings *s,
                      const struct db_class_table *table)
 {
     if (s->is_flat) { /* Nothing is classed from elevation. */
@@ -251,7 +304,7 @@ _Static_assert((int)HS_SENSOR_X == LM_SENSOR_X && (int)HS_SENSOR_KU == LM_SENSOR
                "the header's numbers are those of the host");
 
 /* The sensor of the reflectivity raster, the one that was asked for, the radar's, or X. */
-static int choose_sensor(const struct settings *s, const struct lm_radar *radar,
+static int choose_sensor(const struct build_settings *s, const struct lm_radar *radar,
                          enum hs_sensor *sensor)
 {
     const enum hs_sensor asked = s->sensor >= 0 ? (enum hs_sensor)s->sensor
@@ -278,7 +331,7 @@ static int choose_sensor(const struct settings *s, const struct lm_radar *radar,
     return 0;
 }
 
-static int read_table(struct build_context *b, const struct settings *s)
+static int read_table(struct build_context *b, const struct build_settings *s)
 {
     if (choose_sensor(s, &b->radar, &b->sensor) != 0 ||
         db_class_table_read(&b->table, s->classes) != 0 ||
@@ -313,7 +366,7 @@ static double terrain_pixel_bam(const struct terrain_layer *layer)
     return pixel_bam(&layer->area, layer->pixel_latitude_bam, layer->pixel_longitude_bam);
 }
 
-static int choose_shift0(const struct build_context *b, const struct settings *s)
+static int choose_shift0(const struct build_context *b, const struct build_settings *s)
 {
     if (s->shift0 > 0) {
         return (int)s->shift0;
@@ -344,7 +397,7 @@ static int choose_parts(const struct build_context *b, uint8_t shift0)
     return parts;
 }
 
-static int make_plan(struct build_context *b, const struct settings *s)
+static int make_plan(struct build_context *b, const struct build_settings *s)
 {
     const int shift0 = choose_shift0(b, s);
     if (shift0 < LM_DB_SHIFT_MIN || shift0 > LM_DB_SHIFT_MAX) {
@@ -379,7 +432,7 @@ static int make_plan(struct build_context *b, const struct settings *s)
 
 enum { POSTS_LEAST = 3 }; /* of terrain along the longer side of the class raster; UNSOURCED */
 
-static int check_overlap(const struct build_context *b, const struct settings *s)
+static int check_overlap(const struct build_context *b, const struct build_settings *s)
 {
     if (!b->cover.classes.dataset || s->is_flat) {
         return 0;
@@ -424,7 +477,7 @@ static int choose_heights(struct build_context *b)
     return result;
 }
 
-static int read_codes(struct build_context *b, const struct settings *s)
+static int read_codes(struct build_context *b, const struct build_settings *s, bool is_known)
 {
     if (!s->map) {
         return s->class_raster ? resample_cover_set_numbers(&b->cover, s->ignores_names) : 0;
@@ -439,6 +492,10 @@ static int read_codes(struct build_context *b, const struct settings *s)
         if (b->codes.unknown_class < 0) {
             return -1;
         }
+    }
+    if (is_known) { /* which codes occur was looked at by the plan */
+        b->cover.codes = &b->codes;
+        return 0;
     }
     return resample_cover_set_codes(&b->cover, &b->codes);
 }
@@ -476,7 +533,7 @@ static struct image_area whole_area(const struct build_context *b)
 }
 
 /* The grid of the geoid into b->geoid, and its height in the middle for the header. */
-static int make_geoid(struct build_context *b, const struct settings *s)
+static int make_geoid(struct build_context *b, const struct build_settings *s)
 {
     const struct image_area area = whole_area(b);
     if (!s->geoid_grid) {
@@ -487,20 +544,68 @@ static int make_geoid(struct build_context *b, const struct settings *s)
     return build_geoid_make(&b->geoid, &area, s->geoid_grid);
 }
 
-static int open_inputs(struct build_context *b, const struct settings *s)
+static int open_rasters(struct build_context *b, const struct build_settings *s,
+                        const struct build_work *work)
 {
-    if ((s->radar && radar_text_read(&b->radar, s->radar) != 0) || read_table(b, s) != 0 ||
-        resample_cover_open(&b->cover, &b->table, s->class_raster, s->reflectivity, s->heights) !=
+    const struct terrain_options options = {.sea_level_m = s->sea_level_m,
+                                            .voids_are_sea = s->voids_are_sea,
+                                            .vertical = {s->terrain_unit, s->terrain_datum},
+                                            .are_trusted = s->trusts_inputs,
+                                            .are_judged = work != NULL,
+                                            .have_no_voids = work && !work->has_voids};
+    if (resample_cover_open(&b->cover, &b->table, s->class_raster, s->reflectivity, s->heights) !=
             0 ||
-        resample_cover_judge(&b->cover, s->trusts_inputs) != 0 || read_codes(b, s) != 0 ||
-        terrain_open(&b->terrain, &s->terrain,
-                     &(struct terrain_options){s->sea_level_m,
-                                               s->voids_are_sea,
-                                               {s->terrain_unit, s->terrain_datum},
-                                               s->trusts_inputs}) != 0) {
+        (!work && resample_cover_judge(&b->cover, s->trusts_inputs) != 0)) {
         return -1;
     }
-    if (check_overlap(b, s) != 0 || make_geoid(b, s) != 0 || make_plan(b, s) != 0) {
+    return read_codes(b, s, work != NULL) == 0 ? terrain_open(&b->terrain, &s->terrain, &options)
+                                               : -1;
+}
+
+/* The levels must be those of the plan: keys and shards are made for them. */
+static int check_grid(const struct build_context *b, const struct build_settings *s,
+                      const struct build_work *work)
+{
+    char digest[IMAGE_SHA256_TEXT];
+    build_work_grid(&b->plan, digest);
+    return strcmp(digest, work->grid_sha256) == 0
+               ? 0
+               : hs_error(s->plan, "make the plan again", "the inputs are not those of the plan");
+}
+
+/* Facings are wanted where cells of the finest level are made: not by a plan, nor by a join. */
+static int make_tables(struct build_context *b, const struct build_settings *s,
+                       const struct build_work *work, const struct build_shard *shard, bool is_plan)
+{
+    struct image_area within;
+    if (work && check_grid(b, s, work) != 0) {
+        return -1;
+    }
+    if (shard) {
+        within = build_work_reach(b, shard);
+    }
+    if (!is_plan && (!work || shard) &&
+        build_facing_survey(&b->facing, &b->classes, &b->cover, &b->plan, shard ? &within : NULL) !=
+            0) {
+        return -1;
+    }
+    if (!work) {
+        return choose_heights(b);
+    }
+    memcpy(b->classes.height_dm, work->heights_dm, sizeof b->classes.height_dm);
+    return 0;
+}
+
+int build_job_open(struct build_context *b, const struct build_settings *s,
+                   const struct build_work *work, const struct build_shard *shard, bool is_plan)
+{
+    b->seed = (uint32_t)s->seed;
+    if ((s->radar && radar_text_read(&b->radar, s->radar) != 0) || read_table(b, s) != 0 ||
+        open_rasters(b, s, work) != 0) {
+        return -1;
+    }
+    if ((!work && check_overlap(b, s) != 0) || (!shard && make_geoid(b, s) != 0) ||
+        make_plan(b, s) != 0) {
         return -1;
     }
     set_laws(b);
@@ -509,13 +614,10 @@ static int open_inputs(struct build_context *b, const struct settings *s)
     if (s->detail && build_detail_read(&b->detail, s->detail, &detail) != 0) {
         return -1;
     }
-    if (build_facing_survey(&b->facing, &b->classes, &b->cover, &b->plan, NULL) != 0) {
-        return -1;
-    }
-    return choose_heights(b);
+    return make_tables(b, s, work, shard, is_plan);
 }
 
-static void close_inputs(struct build_context *b)
+void build_job_close(struct build_context *b)
 {
     build_facing_free(&b->facing);
     resample_cover_close(&b->cover);
@@ -523,17 +625,8 @@ static void close_inputs(struct build_context *b)
     build_detail_free(&b->detail);
 }
 
-/* Specific targets and their signatures, with the sections made of them; all zero without any. */
-struct extras {
-    struct build_targets targets;           /* owned */
-    void *targets_bytes, *signatures_bytes; /* owned */
-    size_t targets_size, signatures_size;
-    uint8_t bus[LM_BUS_RECORD_BYTES_MAX]; /* record of the bus table */
-    size_t bus_bytes;                     /* 0: there is none */
-};
-
 /* The bus table as a record. Its name goes with it, and there is less room than in the text. */
-static int read_bus_table(struct extras *e, const char *path)
+static int read_bus_table(struct build_extras *e, const char *path)
 {
     struct bus_table table;
     if (bus_table_load(&table, path) != 0) {
@@ -547,10 +640,10 @@ static int read_bus_table(struct extras *e, const char *path)
     return 0;
 }
 
-static int read_extras(struct extras *e, const struct settings *s)
+int build_job_extras(struct build_extras *e, const struct build_settings *s)
 {
     const char *const path = s->targets;
-    *e = (struct extras){.targets_bytes = NULL};
+    *e = (struct build_extras){.targets_bytes = NULL};
     if (s->bus_table && read_bus_table(e, s->bus_table) != 0) {
         return -1;
     }
@@ -570,7 +663,7 @@ static int read_extras(struct extras *e, const struct settings *s)
                : hs_error(path, NULL, "out of memory");
 }
 
-static void free_extras(struct extras *e)
+void build_job_free_extras(struct build_extras *e)
 {
     build_targets_free(&e->targets);
     free(e->targets_bytes);
@@ -587,7 +680,7 @@ static int write_targets_inputs(FILE *out, const char *path,
     return result;
 }
 
-static int write_inputs(FILE *out, const struct build_context *b, const struct settings *s,
+static int write_inputs(FILE *out, const struct build_context *b, const struct build_settings *s,
                         const struct build_signatures *signatures)
 {
     const struct resample_plane *planes[3] = {&b->cover.classes, &b->cover.reflectivity,
@@ -630,8 +723,8 @@ static int write_inputs(FILE *out, const struct build_context *b, const struct s
 }
 
 /* The whole text; the caller frees it. NULL with the error reported. */
-static char *make_manifest(const struct build_context *b, const struct settings *s,
-                           const struct build_signatures *signatures)
+char *build_job_manifest(const struct build_context *b, const struct build_settings *s,
+                         const struct build_signatures *signatures)
 {
     char *text = NULL, options[704], heights[160];
     image_heights_text(b->classes.height_dm, heights, sizeof heights);
@@ -660,7 +753,7 @@ static char *make_manifest(const struct build_context *b, const struct settings 
     return text;
 }
 
-static int32_t geoid_q6(const struct build_context *b, const struct settings *s,
+static int32_t geoid_q6(const struct build_context *b, const struct build_settings *s,
                         const uint32_t centre[2])
 {
     return b->geoid.rows > 0
@@ -669,7 +762,7 @@ static int32_t geoid_q6(const struct build_context *b, const struct settings *s,
 }
 
 static void fill_header(struct lm_image_header *h, const struct build_context *b,
-                        const struct settings *s, const uint32_t centre[2])
+                        const struct build_settings *s, const uint32_t centre[2])
 {
     const struct build_counts *n = &b->counts;
     const double land_m2 = build_sum_value(&n->land_area_m2);
@@ -685,7 +778,7 @@ static void fill_header(struct lm_image_header *h, const struct build_context *b
     }
 }
 
-static void choose_centre(const struct build_context *b, const struct settings *s,
+static void choose_centre(const struct build_context *b, const struct build_settings *s,
                           uint32_t centre[2])
 {
     if (s->centre) {
@@ -711,13 +804,7 @@ static void set_town_gains(struct build_context *b)
     }
 }
 
-struct report {
-    struct build_level_counts levels;
-    uint64_t image_bytes, entry_count, record_count;
-    int32_t mean_elevation_q6;
-};
-
-static int check_heights(const struct build_context *b, const struct settings *s)
+static int check_heights(const struct build_context *b, const struct build_settings *s)
 {
     if (b->counts.heights_cut == 0 || s->may_cut_heights) {
         return 0;
@@ -728,8 +815,9 @@ static int check_heights(const struct build_context *b, const struct settings *s
                     b->counts.heights_cut);
 }
 
-static int write_image(struct build_context *b, const struct settings *s, const char *manifest,
-                       const struct extras *extras, struct report *report)
+int build_job_write(struct build_context *b, const struct build_settings *s,
+                    const struct build_made *made, const char *manifest,
+                    const struct build_extras *extras, struct build_report *report)
 {
     uint32_t centre[2];
     choose_centre(b, s, centre);
@@ -741,7 +829,7 @@ static int write_image(struct build_context *b, const struct settings *s, const 
     if (image_writer_begin(&w, s->out, &header, &b->classes, b->plan.bands) != 0) {
         return -1;
     }
-    if (build_pyramid(b, &w, &report->levels) != 0 || check_heights(b, s) != 0) {
+    if (build_pyramid_join(b, made, &w, &report->levels) != 0 || check_heights(b, s) != 0) {
         image_writer_abort(&w);
         return -1;
     }
@@ -789,7 +877,7 @@ static void report_level(int level, double cell_m, uint32_t tiles)
     hs_report_close();
 }
 
-static void print_levels(const struct build_context *b, const struct report *r)
+static void print_levels(const struct build_context *b, const struct build_report *r)
 {
     hs_report_array("levels");
     for (int level = 0; level < b->plan.level_count; level++) {
@@ -873,7 +961,8 @@ static void print_voids(const struct terrain *t)
     }
 }
 
-static void print_report(const struct build_context *b, const struct report *r, double seconds)
+static void print_report(const struct build_context *b, const struct build_report *r,
+                         double seconds)
 {
     char heights[160];
     print_levels(b, r);
@@ -908,7 +997,7 @@ static void print_detail(const struct build_context *b, const char *path)
     }
 }
 
-static double now_seconds(void)
+double build_job_seconds(void)
 {
     struct timespec t;
     clock_gettime(CLOCK_MONOTONIC, &t);
@@ -919,56 +1008,200 @@ static double now_seconds(void)
  * memory. */
 static const int64_t cache_bytes = (int64_t)384 << 20;
 
-static int build(const struct settings *s)
+void build_job_print(const struct build_context *b, const struct build_settings *s,
+                     const struct build_extras *extras, const struct build_report *report,
+                     double seconds)
 {
-    const double start = now_seconds();
+    if (s->targets) {
+        printf("targets %" PRIu32 ", signatures %" PRIu32 "\n", extras->targets.count,
+               extras->targets.signatures.count);
+        hs_report_put("targets", extras->targets.count);
+        hs_report_put("signatures", extras->targets.signatures.count);
+    }
+    if (s->detail) {
+        print_detail(b, s->detail);
+    }
+    print_report(b, report, seconds);
+}
+
+static int build(const struct build_settings *s)
+{
+    const double start = build_job_seconds();
     GDALSetCacheMax64(cache_bytes);
     struct build_context *b = calloc(1, sizeof *b);
     if (!b) {
         return hs_error(s->out, NULL, "out of memory");
     }
-    b->seed = (uint32_t)s->seed;
-    struct report report = {0};
-    struct extras extras;
+    struct build_report report = {0};
+    struct build_extras extras;
     char *manifest = NULL;
-    int result = read_extras(&extras, s) == 0 ? open_inputs(b, s) : -1;
+    int result = build_job_extras(&extras, s) == 0 ? build_job_open(b, s, NULL, NULL, false) : -1;
     if (result == 0) {
-        manifest = make_manifest(b, s, &extras.targets.signatures);
-        result = manifest ? write_image(b, s, manifest, &extras, &report) : -1;
-    }
-    if (result == 0 && s->targets) {
-        printf("targets %" PRIu32 ", signatures %" PRIu32 "\n", extras.targets.count,
-               extras.targets.signatures.count);
-        hs_report_put("targets", extras.targets.count);
-        hs_report_put("signatures", extras.targets.signatures.count);
-    }
-    if (result == 0 && s->detail) {
-        print_detail(b, s->detail);
+        manifest = build_job_manifest(b, s, &extras.targets.signatures);
+        result = manifest ? build_job_write(b, s, NULL, manifest, &extras, &report) : -1;
     }
     if (result == 0) {
-        print_report(b, &report, now_seconds() - start);
+        build_job_print(b, s, &extras, &report, build_job_seconds() - start);
     }
-    free_extras(&extras);
+    build_job_free_extras(&extras);
     free(manifest);
-    close_inputs(b);
+    build_job_close(b);
     free(b);
     return result;
 }
 
+/* ---- a shard of a plan ---- */
+
+int build_job_read_plan(struct build_work *work, struct build_settings *s, const char *path)
+{
+    char *words[BUILD_WORK_OPTIONS_MAX + 1] = {(char *)"build"};
+    int exit_code;
+    if (build_work_read(work, path) != 0) {
+        return -1;
+    }
+    for (int i = 0; i < work->option_count; i++) {
+        words[i + 1] = work->options[i];
+        if (strcmp(words[i + 1], "--version") == 0 || strncmp(words[i + 1], "--help", 6) == 0) {
+            return hs_error(path, "make it again with `landmass-db plan`",
+                            "has an option that is none of `build`");
+        }
+    }
+    return build_job_read(s, BUILD_FROM_PLAN, NULL, work->option_count + 1, words, &exit_code) &&
+                   build_job_check(s) == 0
+               ? 0
+               : hs_error(path, "make it again with `landmass-db plan`", "has wrong options");
+}
+
+static int make_part(struct build_context *b, const struct build_settings *s,
+                     const struct build_work *work, int number)
+{
+    const struct build_work_shard *shard = &work->shards[number];
+    struct build_part_writer w;
+    if (build_part_begin(&w, s->out, &shard->place, (uint32_t)number, (uint32_t)work->shard_count,
+                         shard->key) != 0) {
+        return -1;
+    }
+    const struct build_sink sink = {&w, build_part_put};
+    if (build_pyramid_shard(b, &shard->place, &sink) != 0) {
+        build_part_abort(&w);
+        return -1;
+    }
+    const uint32_t tiles = w.head.tile_count;
+    if (build_part_end(&w, b) != 0) {
+        return -1;
+    }
+    printf("shard %d of %d: %" PRIu32 " tiles, %" PRIu64 " bytes\n", number, work->shard_count,
+           tiles, w.head.part_bytes);
+    hs_report_put("shard", number);
+    hs_report_put("shards", work->shard_count);
+    hs_report_put("tiles", tiles);
+    hs_report_put("bytes", w.head.part_bytes);
+    hs_report_put("key", shard->key);
+    return 0;
+}
+
+static void report_cost(double seconds)
+{
+    struct rusage used;
+    if (getrusage(RUSAGE_SELF, &used) == 0) {
+        const double processor_s =
+            (double)used.ru_utime.tv_sec + 1e-6 * (double)used.ru_utime.tv_usec +
+            (double)used.ru_stime.tv_sec + 1e-6 * (double)used.ru_stime.tv_usec;
+        const double memory_mib = (double)used.ru_maxrss / 1024;
+        printf("done in %.1f s, %.1f s of a processor, %.0f MiB\n", seconds, processor_s,
+               memory_mib);
+        hs_report_put("seconds", seconds);
+        hs_report_put("processor_s", processor_s);
+        hs_report_put("memory_mib", memory_mib);
+    }
+}
+
+static int build_shard(struct build_context *b, const struct build_settings *from,
+                       const struct build_work *work)
+{
+    const int number = (int)from->shard;
+    if (number >= work->shard_count) {
+        return hs_error("--shard", "choose one of the plan", "there are %d shards in %s, from 0 on",
+                        work->shard_count, from->plan);
+    }
+    const struct build_shard *place = &work->shards[number].place;
+    int result = build_job_open(b, from, work, place, false);
+    const struct image_area reach = build_work_reach(b, place);
+    if (result == 0) {
+        result = build_work_check_sources(work, &reach);
+    }
+    return result == 0 ? make_part(b, from, work, number) : -1;
+}
+
+int build_job_shard(const struct build_settings *given)
+{
+    const double start = build_job_seconds();
+    GDALSetCacheMax64((int64_t)BUILD_WORK_CACHE_MIB << 20);
+    struct build_work work;
+    struct build_settings s = build_job_defaults();
+    struct build_context *b = calloc(1, sizeof *b);
+    int result = b ? build_job_read_plan(&work, &s, given->plan)
+                   : hs_error(given->out, NULL, "out of memory");
+    if (result == 0) {
+        s.plan = given->plan;
+        s.shard = given->shard;
+        s.out = given->out;
+        result = build_shard(b, &s, &work);
+        if (result != 0) {
+            hs_error(given->plan, "see the line before", "shard %ld could not be made",
+                     given->shard);
+        }
+        build_job_close(b);
+        build_work_free(&work);
+    }
+    if (result == 0) {
+        report_cost(build_job_seconds() - start);
+    }
+    hs_list_free(&s.terrain);
+    free(b);
+    return result;
+}
+
+void build_job_choices(const struct build_context *b, const struct build_settings *s, char *text,
+                       size_t room)
+{
+    const struct build_rule *r = &b->rule;
+    snprintf(text, room,
+             "sensor %d seed %" PRIu32
+             " rule %d %d %d %.17g %.17g voids %d flat %d names %d "
+             "unknown %s\n",
+             (int)b->sensor, b->seed, r->land, r->water, r->steep, r->sea_level_m, r->steep_tangent,
+             s->voids_are_sea, s->is_flat, s->ignores_names,
+             s->unknown_codes ? s->unknown_codes : "refused");
+}
+
+struct build_settings build_job_defaults(void)
+{
+    return (struct build_settings){.land_class = "vegetation",
+                                   .water_class = "water",
+                                   .steep_degrees = 25.0,
+                                   .seed = 1,
+                                   .compression = IMAGE_COMPRESSION_LZ4,
+                                   .sensor = -1,
+                                   .shard = -1,
+                                   .shards = 1,
+                                   .memory_mib = 1024};
+}
+
 int db_cmd_build(int argc, char **argv)
 {
-    struct settings s = {.land_class = "vegetation",
-                         .water_class = "water",
-                         .steep_degrees = 25.0,
-                         .seed = 1,
-                         .compression = IMAGE_COMPRESSION_LZ4,
-                         .sensor = -1};
+    struct build_settings s = build_job_defaults();
     int exit_code;
-    const bool goes_on = read_settings(&s, argc, argv, &exit_code);
-    if (goes_on) {
-        exit_code = check_settings(&s) != 0 ? HS_EXIT_USAGE
-                    : build(&s) != 0        ? HS_EXIT_FAILED
-                                            : HS_EXIT_OK;
+    if (build_job_read(&s, BUILD_WHOLE, NULL, argc, argv, &exit_code)) {
+        if (!s.plan && !s.classes) {
+            exit_code = hs_options_wrong(&usage, "--classes", "is required");
+        } else if (s.plan) {
+            exit_code = build_job_shard(&s) == 0 ? HS_EXIT_OK : HS_EXIT_FAILED;
+        } else {
+            exit_code = build_job_check(&s) != 0 ? HS_EXIT_USAGE
+                        : build(&s) != 0         ? HS_EXIT_FAILED
+                                                 : HS_EXIT_OK;
+        }
     }
     hs_list_free(&s.terrain);
     return exit_code;

@@ -11,6 +11,8 @@ int db_cmd_vectors(int argc, char **argv);
 int db_cmd_reflect(int argc, char **argv);
 int db_cmd_infrared(int argc, char **argv);
 int db_cmd_build(int argc, char **argv);
+int db_cmd_plan(int argc, char **argv);
+int db_cmd_join(int argc, char **argv);
 int db_cmd_convert(int argc, char **argv);
 int db_cmd_inspect(int argc, char **argv);
 int db_cmd_sign(int argc, char **argv);

@@ -14,6 +14,8 @@ static const struct hs_command commands[] = {
     {"reflect", "give each pixel its radar reflectivity", db_cmd_reflect},
     {"infrared", "make thermal pictures of a class raster at hours of a day", db_cmd_infrared},
     {"build", "make the database image from classes, reflectivity and terrain", db_cmd_build},
+    {"plan", "cut an image into shards that are made apart", db_cmd_plan},
+    {"join", "make an image of the shards of a plan", db_cmd_join},
     {"inspect", "print what a database image holds", db_cmd_inspect},
     {"convert", "make an image of version 3 from one of version 2", db_cmd_convert},
     {"sign", "sign a database image with a key of Ed25519", db_cmd_sign},

@@ -5,6 +5,7 @@
 
 #include "hs/class_table.h"
 #include "hs/options.h"
+#include "image/sha256.h"
 
 #include <gdal.h>
 #include <stdint.h>
@@ -18,6 +19,9 @@ struct build_manifest {
 
 /* Write builder, seed, choices and class table. */
 void build_manifest_head(FILE *out, const struct build_manifest *m);
+
+/* Size and digest of a file. Returns 0, or -1, unreported, when it cannot be read. */
+int build_manifest_hash(const char *path, uint64_t *bytes, char digest[IMAGE_SHA256_TEXT]);
 
 /* "input: ROLE NAME BYTES SHA256" for a file, without its folder: the same inputs give the same
  * image wherever they lie. Returns 0, or -1 with the error reported. */

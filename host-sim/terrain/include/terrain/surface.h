@@ -25,7 +25,9 @@ struct terrain_options {
     double sea_level_m;
     bool voids_are_sea; /* whatever their rim says */
     struct terrain_vertical_options vertical;
-    bool are_trusted; /* doubts are warnings (hs_doubt) */
+    bool are_trusted;   /* doubts are warnings (hs_doubt) */
+    bool are_judged;    /* by an earlier run: doubts are not looked for */
+    bool have_no_voids; /* likewise */
 };
 
 struct terrain {
