@@ -433,11 +433,10 @@ static int check_source(const struct build_source *s)
                : hs_error(s->path, plan_again, "has changed since the plan was made");
 }
 
-int build_work_check_sources(const struct build_work *w, const struct image_area *area)
+int build_work_check_sources(const struct build_work *w, const bool *counts)
 {
     for (int i = 0; i < w->source_count; i++) {
-        const struct build_source *s = &w->sources[i];
-        if ((!area || image_areas_meet(&s->area, area)) && check_source(s) != 0) {
+        if ((!counts || counts[i]) && check_source(&w->sources[i]) != 0) {
             return -1;
         }
     }

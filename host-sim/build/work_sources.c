@@ -155,37 +155,76 @@ struct image_area build_work_reach(const struct build_context *b, const struct b
     return a;
 }
 
-static bool is_within(const struct image_area *a, const struct image_area *whole)
+/* A rectangle, east and north of the corner of an area. */
+struct piece {
+    int64_t west, east, south, north;
+};
+
+static struct piece piece_of(const struct image_area *a, uint32_t west)
 {
-    const int64_t east = (uint32_t)(a->west - whole->west);
-    return a->south >= whole->south && a->north <= whole->north &&
-           (whole->width == IMAGE_BAM_ROUND || east + a->width <= whole->width);
+    const int64_t from = a->width >= IMAGE_BAM_ROUND ? -IMAGE_BAM_ROUND : (int32_t)(a->west - west);
+    const int64_t width = a->width >= IMAGE_BAM_ROUND ? 2 * IMAGE_BAM_ROUND : a->width;
+    return (struct piece){from, from + width, a->south, a->north};
 }
 
-/* Is the area covered by files of terrain? Looked for in quarters of quarters. */
-static bool is_covered(const struct build_work *w, const struct image_area *a, int depth)
+static bool is_terrain(const struct build_source *s)
 {
-    bool meets = false;
-    for (int i = 0; i < w->source_count; i++) {
-        const struct build_source *s = &w->sources[i];
-        if (strcmp(s->role, "terrain") == 0 && s->area.width < IMAGE_BAM_ROUND) {
-            if (is_within(a, &s->area)) {
-                return true;
-            }
-            meets = meets || image_areas_meet(a, &s->area);
+    return strcmp(s->role, "terrain") == 0;
+}
+
+/* Do files of terrain from `first` on cover a piece? What one does not cover is left to the next
+ * ones. */
+static bool is_covered(const struct build_work *w, uint32_t west, int first, struct piece p)
+{
+    if (p.west >= p.east || p.south >= p.north) {
+        return true;
+    }
+    for (int i = first; i < w->source_count; i++) {
+        const struct piece f = piece_of(&w->sources[i].area, west);
+        if (!is_terrain(&w->sources[i]) || f.west >= p.east || f.east <= p.west ||
+            f.south >= p.north || f.north <= p.south) {
+            continue;
         }
+        struct piece south = p, north = p, before = p, behind = p;
+        south.north = f.south;
+        north.south = f.north;
+        before.south = behind.south = f.south > p.south ? f.south : p.south;
+        before.north = behind.north = f.north < p.north ? f.north : p.north;
+        before.east = f.west;
+        behind.west = f.east;
+        return is_covered(w, west, i + 1, south) && is_covered(w, west, i + 1, north) &&
+               is_covered(w, west, i + 1, before) && is_covered(w, west, i + 1, behind);
     }
-    const int64_t high = (a->north - a->south) / 2, wide = a->width / 2;
-    bool all = meets && depth > 0 && high > 0 && wide > 0;
-    for (int i = 0; i < 4 && all; i++) {
-        const bool north = i / 2 == 1, east = i % 2 == 1;
-        const struct image_area quarter = {.south = north ? a->south + high : a->south,
-                                           .north = north ? a->north : a->south + high,
-                                           .west = east ? a->west + (uint32_t)wide : a->west,
-                                           .width = east ? a->width - wide : wide};
-        all = is_covered(w, &quarter, depth - 1);
+    return false;
+}
+
+/* Ground beyond the terrain takes the nearest edge. Of one layer it is beside the shard. */
+static bool takes_all_terrain(const struct build_work *w, const struct build_context *b,
+                              const struct image_area *reach)
+{
+    struct piece p = piece_of(reach, reach->west);
+    if (b->terrain.layer_count == 0) {
+        return false;
     }
-    return all;
+    if (b->terrain.layer_count == 1 && image_areas_meet(&b->terrain.layers[0].area, reach)) {
+        const struct piece layer = piece_of(&b->terrain.layers[0].area, reach->west);
+        p.west = layer.west > p.west ? layer.west : p.west;
+        p.east = layer.east < p.east ? layer.east : p.east;
+        p.south = layer.south > p.south ? layer.south : p.south;
+        p.north = layer.north < p.north ? layer.north : p.north;
+    }
+    return !is_covered(w, reach->west, 0, p);
+}
+
+void build_work_choose(const struct build_work *w, const struct build_context *b,
+                       const struct build_shard *s, bool *counts)
+{
+    const struct image_area reach = build_work_reach(b, s);
+    const bool all = takes_all_terrain(w, b, &reach);
+    for (int i = 0; i < w->source_count; i++) {
+        counts[i] =
+            image_areas_meet(&w->sources[i].area, &reach) || (all && is_terrain(&w->sources[i]));
+    }
 }
 
 /* ---- keys ---- */
@@ -294,22 +333,18 @@ static void feed_detail(struct image_sha256 *sha, const struct build_context *b,
 }
 
 static void make_key(const struct build_work *w, const struct build_context *b,
-                     const struct image_sha256 *common, struct build_work_shard *s)
+                     const struct image_sha256 *common, bool *counts, struct build_work_shard *s)
 {
     static const char *const of_tiles[] = {"classes",      "map",     "class-raster",
                                            "reflectivity", "heights", "terrain"};
-    static const char *const terrain[] = {"terrain"};
     const struct image_area reach = build_work_reach(b, &s->place);
-    /* Ground beyond the terrain takes the nearest edge, wherever that is. */
-    const bool takes_all_terrain = !is_covered(w, &reach, 6);
     struct image_sha256 sha = *common;
+    build_work_choose(w, b, &s->place, counts);
     feed(&sha, "shard %d %d %u %u %u %u\n", s->place.level, s->place.zone, (unsigned)s->place.row0,
          (unsigned)s->place.rows, (unsigned)s->place.column0, (unsigned)s->place.columns);
     for (int i = 0; i < w->source_count; i++) {
         const struct build_source *source = &w->sources[i];
-        const bool counts = image_areas_meet(&source->area, &reach) ||
-                            (takes_all_terrain && has_role(source, terrain, 1));
-        if (counts && has_role(source, of_tiles, 6)) {
+        if (counts[i] && has_role(source, of_tiles, 6)) {
             feed(&sha, "%s %s\n", source->role, source->sha256);
         }
     }
@@ -377,8 +412,10 @@ int build_work_cut(struct build_work *w, const struct build_context *b, int coun
                         "a shard would need %" PRId64 " MiB however small it is", largest);
     }
     const struct image_sha256 common = common_digest(w, b, choices);
-    for (int i = 0; i < w->shard_count; i++) {
-        make_key(w, b, &common, &w->shards[i]);
+    bool *counts = calloc((size_t)w->source_count + 1, sizeof *counts);
+    for (int i = 0; counts && i < w->shard_count; i++) {
+        make_key(w, b, &common, counts, &w->shards[i]);
     }
-    return 0;
+    free(counts);
+    return counts ? 0 : hs_error("plan", NULL, "out of memory");
 }

@@ -28,7 +28,7 @@ struct notes {
 };
 
 static struct report {
-    bool is_wanted;
+    bool is_wanted, is_claimed;
     const char *path;    /* "-": standard output */
     int standard_output; /* the one that the program was started with; -1: not used */
     char *bytes;         /* owned; what `json` has written */
@@ -204,9 +204,10 @@ static void abandon(void)
 
 int hs_report_claim(void)
 {
-    if (!report.is_wanted || report.standard_output >= 0) {
+    if (!report.is_wanted || report.is_claimed || report.standard_output >= 0) {
         return 0;
     }
+    report.is_claimed = true;
     if (hs_output_claim(report.path) != 0) {
         abandon();
         return -1;

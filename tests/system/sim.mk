@@ -34,3 +34,11 @@ $(SIGN_TESTS): $(O)/bin/tests/system/%: tests/system/%.py $(O)/bin/landmass-db $
 	@mkdir -p $(@D)
 	@printf '#!/bin/sh\nexec $${PYTHON:-/usr/bin/python3} -B %s "$$@"\n' '$<' >$@
 	@chmod +x $@
+
+# Images that are made in shards.
+SHARDS_TEST := $(O)/bin/tests/system/test_shards
+TESTS += $(SHARDS_TEST)
+$(SHARDS_TEST): tests/system/test_shards.py $(addprefix $(O)/bin/landmass-,db scene)
+	@mkdir -p $(@D)
+	@printf '#!/bin/sh\nexec $${PYTHON:-/usr/bin/python3} -B tests/system/test_shards.py\n' >$@
+	@chmod +x $@

@@ -1125,11 +1125,14 @@ static int build_shard(struct build_context *b, const struct build_settings *fro
                         work->shard_count, from->plan);
     }
     const struct build_shard *place = &work->shards[number].place;
-    int result = build_job_open(b, from, work, place, false);
-    const struct image_area reach = build_work_reach(b, place);
+    bool *counts = calloc((size_t)work->source_count + 1, sizeof *counts);
+    int result = counts ? build_job_open(b, from, work, place, false)
+                        : hs_error(from->plan, NULL, "out of memory");
     if (result == 0) {
-        result = build_work_check_sources(work, &reach);
+        build_work_choose(work, b, place, counts);
+        result = build_work_check_sources(work, counts);
     }
+    free(counts);
     return result == 0 ? make_part(b, from, work, number) : -1;
 }
 

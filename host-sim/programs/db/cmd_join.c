@@ -78,8 +78,8 @@ static int open_folder(struct join *j, const char *folder)
         }
         j->names[i] = path;
         if (access(path, F_OK) != 0) {
-            return hs_error(path, "make it with `landmass-db build --shard`",
-                            "shard %d is missing", i);
+            return hs_error(path, "make it with `landmass-db build --shard`", "shard %d is missing",
+                            i);
         }
         if (open_part(j, path) != 0) {
             return hs_error(path, "make it again", "is shard %d", i);

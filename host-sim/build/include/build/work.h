@@ -59,8 +59,8 @@ void build_work_free(struct build_work *w);
 /* The digest of levels and bands. */
 void build_work_grid(const struct build_plan *plan, char sha256[IMAGE_SHA256_TEXT]);
 
-/* Look whether the sources that matter in an area, NULL: all, are those of the plan: by size and
+/* Look whether sources, those with counts[i] or with NULL all, are those of the plan: by size and
  * time, and by their bytes where the time differs. Returns 0, or -1 with the file reported. */
-int build_work_check_sources(const struct build_work *w, const struct image_area *area);
+int build_work_check_sources(const struct build_work *w, const bool *counts);
 
 #endif

@@ -27,6 +27,10 @@ int build_work_cut(struct build_work *w, const struct build_context *b, int coun
 /* The area from which sources reach into a shard. */
 struct image_area build_work_reach(const struct build_context *b, const struct build_shard *s);
 
+/* Which sources of the plan a shard is made from: counts[i] of each. */
+void build_work_choose(const struct build_work *w, const struct build_context *b,
+                       const struct build_shard *s, bool *counts);
+
 enum { BUILD_WORK_CACHE_MIB = 256 }; /* that GDAL may take in a shard */
 
 #endif

@@ -48,8 +48,8 @@ bool hs_report_is_wanted(void);
  * Both texts are kept. "-" is standard output, and what is printed there from now on goes to
  * standard error. Returns 0, or -1 with the error reported: no memory, or no standard output.
  *
- * hs_report_claim makes sure that it can be written, when all other outputs are claimed: as
- * hs_output_claim. On failure there will be no report.
+ * hs_report_claim makes sure, once in a run, that it can be written, when all other outputs are
+ * claimed: as hs_output_claim. On failure there will be no report.
  *
  * hs_options_read calls both. */
 int hs_report_begin(const char *command, const char *path);

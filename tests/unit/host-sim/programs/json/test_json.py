@@ -160,6 +160,33 @@ def names_that_are_no_utf_8_do_not_spoil_it():
 
 # ---- the commands ----
 
+def db_plan():
+    document, text = run("db", "plan", *SHARDED, "--shards", "4", "--out", here("four.plan"))
+    r = document["report"]
+    assert [(s["shard"], s["tiles_at_most"], s["memory_mib"]) for s in r["shards"]] == \
+        rows(r"^shard (\d+) +at most (\d+) tiles, (\d+) MiB", text) and len(r["shards"]) >= 4
+    assert [len(r["shards"]), r["sources"], r["tiles_at_most"]] == \
+        find(r"^(\d+) shards of (\d+) sources, together at most (\d+) tiles", text)
+    # One of them, as another document of `build`.
+    document, text = run("db", "build", "--plan", here("four.plan"), "--shard", "1", "--out", here("1.part"))
+    part = document["report"]
+    assert [part["shard"], part["shards"], part["tiles"], part["bytes"]] == \
+        find(r"^shard (\d+) of (\d+): (\d+) tiles, (\d+) bytes", text) and part["key"] == r["shards"][1]["key"]
+    assert part["bytes"] == os.path.getsize(here("1.part"))
+
+
+def db_join():
+    assert start("db", "plan", *SHARDED, "--out", here("join.plan")).returncode == 0
+    with open(here("join.plan")) as file:
+        parts = [here("join%d.part" % i) for i in range(sum(line.startswith("shard ") for line in file))]
+    for number, part in enumerate(parts):
+        assert start("db", "build", "--plan", here("join.plan"), "--shard", str(number), "--out", part).returncode == 0
+    document, text = run("db", "join", here("join.plan"), "--part", ",".join(parts), "--out", here("joined.lmdb"))
+    r = document["report"]
+    assert [r["tiles"], r["entries"], r["bytes"]] == find(r"^image (\d+) tiles of (\d+) entries, (\d+) bytes", text)
+    assert r["bytes"] == os.path.getsize(here("joined.lmdb"))
+
+
 def db_inspect():
     document, text = run("db", "inspect", here("image.lmdb"))
     r = document["report"]
@@ -221,6 +248,7 @@ def confusion(r, text, pixels):
         find(r"^%s +%s " % (c["name"][:14], " +".join(map(str, given[i]))), text)
 
 
+SHARDED = ["--classes", CLASSES, "--terrain", here("scene/terrain.tif"), "--cell", "20"]
 EXEMPLARS = ["--image", here("scene/image.tif"), "--exemplars", here("scene/exemplars.geojson"), "--classes", CLASSES]
 
 
@@ -858,7 +886,7 @@ def the_document_lists_every_command():
 # In this order: some read what others wrote.
 CHECKS = {"db import": db_import, "db train": db_train, "db segment": db_segment, "db correct": db_correct,
           "db vectors": db_vectors, "db reflect": db_reflect, "db infrared": db_infrared,
-          "db build": db_build, "db inspect": db_inspect, "db convert": db_convert, "db sign": db_sign, "db verify": db_verify, "db qgis": db_qgis, "db export": db_export,
+          "db build": db_build, "db plan": db_plan, "db join": db_join, "db inspect": db_inspect, "db convert": db_convert, "db sign": db_sign, "db verify": db_verify, "db qgis": db_qgis, "db export": db_export,
           "db picture": db_picture, "scene": scene, "nav": nav, "dis": dis, "ios": ios, "bus decode": bus_decode, "bus fields": bus_fields,
           "bus table": bus_table, "bus dbc": bus_dbc, "bus filters": bus_filters, "bus reports": bus_reports,
           "bus controls": bus_controls, "sim": sim,
