@@ -229,8 +229,7 @@ static int read_manifest(struct reader *r, const char *text)
         return wrong(r, "out of memory");
     }
     r->work->manifest = whole;
-    memcpy(whole + r->manifest_bytes, text, length);
-    memcpy(whole + r->manifest_bytes + length, "\n", 2);
+    snprintf(whole + r->manifest_bytes, length + 2, "%s\n", text);
     r->manifest_bytes += length + 1;
     return 0;
 }

@@ -77,7 +77,7 @@ void build_job_print(const struct build_context *b, const struct build_settings 
                      double seconds);
 
 /* Make one shard of s->plan. */
-int build_job_shard(const struct build_settings *s);
+int build_job_shard(const struct build_settings *given);
 /* Read a plan and its options, which stay in `work`. */
 int build_job_read_plan(struct build_work *work, struct build_settings *s, const char *path);
 
