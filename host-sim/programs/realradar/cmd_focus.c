@@ -31,6 +31,7 @@ struct focus {
     struct rr_profiles profiles;
     struct rr_image image;
     double side_m, pixel_m;
+    double taylor_db; /* of the picture, and so of its speckle; 0: no weighting */
 };
 
 static void put_statistics(const struct rr_statistics *s)
@@ -122,7 +123,7 @@ static int measure_noise(const struct focus *f, struct rr_ground *ground)
         return status;
     }
     rr_phase_history_fill_noise(&noise, 1);
-    status = rr_compress(&profiles, &noise, 0);
+    status = rr_compress(&profiles, &noise, f->taylor_db);
     if (status == 0) {
         status = rr_image_make(&image, &profiles, f->side_m, f->pixel_m);
     }
@@ -284,7 +285,7 @@ static int focus(struct focus *f, const char *path, const char *folder)
         return -1;
     }
     f->resolution = rr_resolution_of(&f->history);
-    if (rr_compress(&f->profiles, &f->history, 0) != 0 ||
+    if (rr_compress(&f->profiles, &f->history, f->taylor_db) != 0 ||
         rr_image_make(&f->image, &f->profiles, f->side_m, f->pixel_m) != 0) {
         return -1;
     }
@@ -309,6 +310,10 @@ int rr_cmd_focus(int argc, char **argv)
         {"size", HS_REAL, &f.side_m, 20, 200, "M",
          "side of the ground patch round the scene's centre", false},
         {"pixel", HS_REAL, &f.pixel_m, 0.05, 1, "M", "of the picture", false},
+        {"side-lobes", HS_REAL, &f.taylor_db, 0, 60, "DB",
+         "how far a Taylor weighting of the picture holds them below a point, so that what is\n"
+         "bright lays less of itself over the ground; 0: no weighting",
+         false},
         {"out", HS_FOLDER, &folder, 0, 0, "DIR",
          "leave picture.png there, 60 dB from black to white", false},
     };
