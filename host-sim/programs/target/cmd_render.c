@@ -26,6 +26,7 @@ struct outputs {
     int zoom;
     bool is_coherent;
     int weighting; /* enum focus_weighting */
+    long layer;    /* the only reflection whose echoes count, from 1; 0: all do */
 };
 
 static int write_csv(const char *path, const float *power, int width, int height)
@@ -108,6 +109,21 @@ static int render(const struct setup *s, const struct trace_records *r, const st
     return result;
 }
 
+/* Leave the echoes of one reflection; what goes on from the others stays. */
+static int keep_layer(struct trace_records *r, long layer)
+{
+    if (layer > r->bounce_count) {
+        return hs_error("--layer", "give at most the number of --bounces",
+                        "reflection %ld was not traced", layer);
+    }
+    for (uint32_t b = 0; layer > 0 && b < r->bounce_count; b++) {
+        for (uint32_t i = 0; b + 1 != layer && i < r->bounces[b].count; i++) {
+            r->bounces[b].records[i].flags |= TRACE_BLOCKED;
+        }
+    }
+    return 0;
+}
+
 static int trace_model(const struct setup *s, struct trace_records *r)
 {
     struct scene scene;
@@ -127,7 +143,7 @@ static int run(const struct setup *s, const char *records, const struct outputs 
     if (loaded != 0) {
         return HS_EXIT_FAILED;
     }
-    const int result = render(s, &r, o);
+    const int result = keep_layer(&r, o->layer) == 0 ? render(s, &r, o) : -1;
     trace_records_free(&r);
     return result == 0 ? HS_EXIT_OK : HS_EXIT_FAILED;
 }
@@ -148,7 +164,7 @@ int target_cmd_render(int argc, char **argv)
     struct outputs o = {.zoom = 6, .weighting = FOCUS_TAYLOR};
     const char *records = NULL;
     long zoom = 6;
-    enum { OWN = 24, COUNT = OWN + SETUP_OPTIONS };
+    enum { OWN = 25, COUNT = OWN + SETUP_OPTIONS };
     struct hs_option options[COUNT] = {
         {"records", HS_INPUT, &records, 0, 0, "FILE.trace", "in place of a model", false},
         {"out", HS_OUTPUT, &o.png, 0, 0, "FILE.png", "the picture", false},
@@ -158,6 +174,8 @@ int target_cmd_render(int argc, char **argv)
         {"coherent", HS_FLAG, &o.is_coherent, 0, 0, NULL, "add fields instead of power", false},
         {"weighting", HS_CHOICE, &o.weighting, 0, 0, FOCUS_WEIGHTING_WORDS,
          "of the radar's band, with --coherent", false},
+        {"layer", HS_INTEGER, &o.layer, 0, TRACE_BOUNCES_MAX, "N",
+         "echoes of the Nth reflection alone; 0: of all", false},
         {"zoom", HS_INTEGER, &zoom, 1, 64, "N", "dots of the PNG a pixel, either way", false},
         {"azimuth", HS_REAL, &s.azimuth_deg, -360, 360, "DEG",
          "of the radar, from the model's nose towards its right", false},

@@ -107,6 +107,31 @@ TEST(a_resolution_that_the_cells_cannot_have_is_refused)
     assert_int_equal(run("render --model slicy --resolution 0.12 --csv fine.csv"), 0);
 }
 
+/* Power is added, and spread by the same response: the pictures of the five reflections add up to
+ * the whole one. */
+TEST(layers_of_reflections_add_up_to_the_picture)
+{
+    assert_int_equal(run("trace --model slicy --azimuth 20 --out layers.trace"), 0);
+    assert_int_equal(run("render --records layers.trace --csv layer0.csv"), 0);
+    for (int layer = 1; layer <= 5; layer++) {
+        char line[96];
+        snprintf(line, sizeof line, "render --records layers.trace --layer %d --csv layer%d.csv",
+                 layer, layer);
+        assert_int_equal(run(line), 0);
+    }
+    assert_int_equal(
+        shell("paste -d, layer0.csv layer1.csv layer2.csv layer3.csv layer4.csv layer5.csv | "
+              "awk -F, '{ n = NF / 6; for (i = 1; i <= n; i++) { sum = 0; "
+              "for (k = 1; k < 6; k++) { p = $(i + k * n) ^ 2; sum += p; of[k] += p } "
+              "d = sum - $i ^ 2; if (d < 0) d = -d; if (d > 1e-4 * $i ^ 2 + 1e-12) bad++ } } "
+              "END { exit !(!bad && of[1] > 0 && of[2] > 0 && of[3] > 0 && of[2] != of[1]) }'"),
+        0);
+    assert_int_equal(run("trace --model slicy --bounces 2 --out two.trace"), 0);
+    assert_int_equal(run("render --records two.trace --layer 3 --csv no.csv 2>errors"), 1);
+    assert_int_equal(
+        shell("grep -q 'layer: reflection 3 was not traced' errors && ! test -e no.csv"), 0);
+}
+
 /* GDAL's own tools read the fields: their values are those of the CSV, row by row. */
 TEST(complex_chips_are_read_by_other_programs)
 {
