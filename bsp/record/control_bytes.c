@@ -116,6 +116,13 @@ static void member_of(struct bytes *b, struct lm_control *c)
         NUMBER(b, c->slew.x);
         NUMBER(b, c->slew.y);
         break;
+    case LM_CONTROL_SLOTS:
+        NUMBER(b, c->slots.flown);
+        NUMBER(b, c->slots.damaged);
+        NUMBER(b, c->slots.cut_off);
+        NUMBER(b, c->slots.load);
+        NUMBER(b, c->slots.percent);
+        break;
     case LM_CONTROL_DESIGNATE:
     case LM_CONTROL_DROP:
     case LM_CONTROL_TRACK:

@@ -4,6 +4,7 @@
 #include "console.h"
 #include "fx/mem.h"
 #include "sections.h"
+#include "slots.h"
 
 static ZCU102_BULK struct lm_tile tile_pool[ZCU102_TILES];
 static ZCU102_BULK uint8_t plane[ZCU102_WIDTH_PX * ZCU102_HEIGHT_PX];
@@ -85,6 +86,7 @@ static void open_devices(struct zcu102 *z)
                                            .now_us = zcu102_now_us,
                                            .clock = &z->timer};
     complain_if(z, drv_flash_open(&z->flash, &flash), "flash");
+    zcu102_choose_slot(z, tile_pool, sizeof tile_pool);
 
     for (uint32_t i = 0; i < DRV_DISPLAY_BUFFERS; i++) {
         scans[i].pixels = scanned[i];
@@ -107,7 +109,7 @@ void zcu102_open(struct zcu102 *z)
     open_console(z);
     open_devices(z);
     z->supervisor.watchdog = &z->watchdog;
-    z->lent = (struct lm_board){.flash = &z->flash.port,
+    z->lent = (struct lm_board){.flash = &z->slots.port,
                                 .can = &z->can.port,
                                 .controls = &z->bezel.port,
                                 .display = &z->display.port,
@@ -115,7 +117,7 @@ void zcu102_open(struct zcu102 *z)
                                 .tile_pool_bytes = sizeof tile_pool,
                                 .plane = plane,
                                 .glass_step_px = LM_GLASS_STEP_PX,
-                                .flash_poll_limit = 1000000};
+                                .flash_poll_limit = ZCU102_FLASH_POLLS};
     if (z->last_restart.cause != ZCU102_POWER_ON) {
         z->lent.restart = zcu102_cause_words(z->last_restart.cause);
     }
@@ -126,6 +128,7 @@ int zcu102_start(struct zcu102 *z)
     zcu102_recording_begin(&z->recording, &z->bezel_line, &z->console, &z->lent);
     const int status = lm_unit_init(&z->unit, &z->lent);
     if (status == LM_OK) {
+        zcu102_show_slots(z);
         drv_timer_init(&z->timer);
         z->supervisor.next_us = ZCU102_SUPERVISION_US;
         z->is_supervised = true;

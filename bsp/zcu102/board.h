@@ -11,6 +11,7 @@
 #include "drv/uart_cadence.h"
 #include "drv/watchdog_cadence.h"
 #include "exception.h"
+#include "lm/slot_flash.h"
 #include "lm/unit.h"
 #include "recording.h"
 #include "restart.h"
@@ -36,6 +37,7 @@ struct zcu102 {
     struct zcu102_core core;
     struct drv_can can;
     struct drv_flash flash;
+    struct lm_slot_flash slots;
     struct drv_display display;
     struct drv_watchdog watchdog;
     struct zcu102_supervisor supervisor;

@@ -134,11 +134,49 @@ static void add_counters(const struct lm_unit *u, uint32_t row, struct lm_text *
     }
 }
 
+/* How far a load is, or else the slot that is flown. */
+static void add_slot(const struct lm_slots_state *s, struct lm_text *t)
+{
+    static const char *const loads[LM_LOADS] = {
+        [LM_LOAD_RUNS] = "  LOAD ", [LM_LOAD_DONE] = "  LOADED", [LM_LOAD_FAILED] = "  LOAD FAIL"};
+    if (s->load != LM_LOAD_NONE) {
+        lm_text_add(t, loads[s->load]);
+        if (s->load == LM_LOAD_RUNS) {
+            lm_text_number(t, (uint32_t)s->percent, 1);
+        }
+    } else if (s->flown != 0) {
+        lm_text_add(t, s->flown == 1 ? "  SLOT A" : "  SLOT B");
+    }
+}
+
+/* Why it is not the other one: "SLOT A BAD". */
+static void add_slot_faults(const struct lm_slots_state *s, struct lm_text *t)
+{
+    for (uint32_t i = 0; i < 2; i++) {
+        const bool is_damaged = (s->damaged >> i & 1) != 0;
+        if (is_damaged || (s->cut_off >> i & 1) != 0) {
+            lm_text_add(t, t->length == 0 ? "SLOT " : "  SLOT ");
+            lm_text_add(t, i == 0 ? "A" : "B");
+            lm_text_add(t, is_damaged ? " BAD" : " CUT OFF");
+        }
+    }
+}
+
+static void add_restart(const struct lm_unit *u, struct lm_text *t)
+{
+    if (u->board->restart) {
+        lm_text_add(t, "RESTART  ");
+        lm_text_add(t, u->board->restart);
+    }
+    add_slot_faults(&u->slots, t);
+}
+
 static void add_database(const struct lm_unit *u, uint32_t row, struct lm_text *t)
 {
     if (row == 0) {
         lm_text_add(t, "LANDMASS " LM_VERSION "  IMAGE V");
         lm_text_number(t, LM_DB_VERSION, 1);
+        add_slot(&u->slots, t);
     } else if (row == 1) {
         const struct lm_text refusal = lm_unit_map_refusal(&u->map);
         lm_text_add(t, "DB ");
@@ -209,9 +247,8 @@ struct lm_text lm_bit_row(const struct lm_unit *u, uint32_t row)
         add_flags(u->flags, &t);
     } else if (row < ROW_RESTART) {
         add_fault(u, row - ROW_FAULTS, &t);
-    } else if (row == ROW_RESTART && u->board->restart) {
-        lm_text_add(&t, "RESTART  ");
-        lm_text_add(&t, u->board->restart);
+    } else if (row == ROW_RESTART) {
+        add_restart(u, &t);
     } else if (row == ROW_BROKEN) {
         add_broken(&u->malfunctions.now, &t);
     }

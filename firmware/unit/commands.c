@@ -206,6 +206,22 @@ static bool apply_slew(struct lm_unit *u, const struct lm_control *control)
     return true;
 }
 
+/* 0..most; a negative number is large. */
+static bool is_up_to(int32_t value, uint32_t most)
+{
+    return (uint32_t)value <= most;
+}
+
+int lm_unit_tell_slots(struct lm_unit *u, const struct lm_slots_state *s)
+{
+    if (!is_up_to(s->flown, 2) || !is_up_to(s->damaged, 3) || !is_up_to(s->cut_off, 3) ||
+        !is_up_to(s->load, LM_LOADS - 1) || !is_up_to(s->percent, 100)) {
+        return LM_ERR_RANGE;
+    }
+    u->slots = *s;
+    return LM_OK;
+}
+
 static enum lm_refusal apply_control(struct lm_unit *u, const struct lm_control *control,
                                      uint64_t now_us)
 {
@@ -247,6 +263,8 @@ static enum lm_refusal apply_control(struct lm_unit *u, const struct lm_control 
         return refused_unless(apply_slew(u, control));
     case LM_CONTROL_DESIGNATE:
         return designate(u, now_us);
+    case LM_CONTROL_SLOTS:
+        return refused_unless(lm_unit_tell_slots(u, &control->slots) == LM_OK);
     }
     return LM_REFUSED_VALUE;
 }

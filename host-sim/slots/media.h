@@ -8,7 +8,8 @@
 
 int slot_medium_mtd(struct slot_medium *m, const char *path, enum slot_use use, int *fd);
 
-/* A file, or a block device. */
-int slot_medium_file(struct slot_medium *m, const char *path, enum slot_use use, int *fd);
+/* A file, or a block device; with chip_bytes other than 0 a chip's contents in a file. */
+int slot_medium_file(struct slot_medium *m, const char *path, uint64_t chip_bytes,
+                     enum slot_use use, int *fd);
 
 #endif

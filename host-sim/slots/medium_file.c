@@ -1,4 +1,4 @@
-/* A slot in a file or on a block device. */
+/* A slot in a file or on a block device, or in a file that is the contents of a flash chip. */
 #include "hs/durable_file.h"
 #include "hs/whole_file.h"
 #include "media.h"
@@ -139,16 +139,41 @@ static int open_one(const char *path, enum slot_use use, int *fd)
     return 0;
 }
 
-static int find_records(struct file_medium *f, const char *path, enum slot_use use)
+/* Erased flash behind what the file has. */
+static int fill_chip(int fd, uint64_t from, uint64_t to)
+{
+    uint8_t erased[RECORD_BYTES];
+    memset(erased, 0xff, sizeof erased);
+    int cause = 0;
+    while (from < to && cause == 0) {
+        const uint64_t left = to - from;
+        const uint32_t length = left < sizeof erased ? (uint32_t)left : (uint32_t)sizeof erased;
+        cause = hs_write_whole(fd, erased, length, from);
+        from += length;
+    }
+    return cause;
+}
+
+static int find_records(struct file_medium *f, const char *path, uint64_t chip_bytes,
+                        enum slot_use use)
 {
     struct stat about;
     char name[PATH_MAX];
     if (fstat(f->image_fd, &about) != 0) {
         return errno;
     }
-    f->is_device = S_ISBLK(about.st_mode);
+    if (chip_bytes != 0 && S_ISREG(about.st_mode) && use == SLOT_TO_WRITE) {
+        const int cause = fill_chip(f->image_fd, (uint64_t)about.st_size, chip_bytes);
+        if (cause != 0) {
+            return cause;
+        }
+    }
+    f->is_device = S_ISBLK(about.st_mode) || chip_bytes != 0;
     if (f->is_device) {
         const off_t end = lseek(f->image_fd, 0, SEEK_END);
+        if (chip_bytes != 0 && (uint64_t)end != chip_bytes) {
+            return EINVAL;
+        }
         f->records_fd = f->image_fd;
         f->records_at = end < RECORDS_BYTES ? 0 : ((uint64_t)end - RECORDS_BYTES) & ~UINT64_C(4095);
         return end < 2 * RECORDS_BYTES ? ENOSPC : 0;
@@ -161,7 +186,8 @@ static int find_records(struct file_medium *f, const char *path, enum slot_use u
     return cause == 0 && use == SLOT_TO_WRITE ? hs_sync_folder(path) : cause;
 }
 
-int slot_medium_file(struct slot_medium *m, const char *path, enum slot_use use, int *fd)
+int slot_medium_file(struct slot_medium *m, const char *path, uint64_t chip_bytes,
+                     enum slot_use use, int *fd)
 {
     struct file_medium *f = malloc(sizeof *f);
     if (!f) {
@@ -173,7 +199,7 @@ int slot_medium_file(struct slot_medium *m, const char *path, enum slot_use use,
         free(f);
         return cause;
     }
-    cause = find_records(f, path, use);
+    cause = find_records(f, path, chip_bytes, use);
     if (cause != 0) {
         close_all(f);
         return cause;

@@ -48,8 +48,16 @@ int slot_open(struct slot *s, const char *path, enum slot_use use)
     int cause = slot_medium_mtd(&s->medium, path, use, &s->fd);
     /* ENOENT: a file that is to be made. */
     if (cause == ENOTTY || cause == ENOENT) {
-        cause = slot_medium_file(&s->medium, path, use, &s->fd);
+        cause = slot_medium_file(&s->medium, path, 0, use, &s->fd);
     }
+    s->is_open = cause == 0;
+    return cause == 0 ? 0 : say_absent(s, cause);
+}
+
+int slot_open_chip(struct slot *s, const char *path, uint64_t chip_bytes, enum slot_use use)
+{
+    *s = (struct slot){.path = path, .fd = -1};
+    const int cause = slot_medium_file(&s->medium, path, chip_bytes, use, &s->fd);
     s->is_open = cause == 0;
     return cause == 0 ? 0 : say_absent(s, cause);
 }

@@ -83,7 +83,8 @@ void prove_kind(void)
     const struct lm_control_words heard = nondet_words();
     ASSUME(is_heard_sound(&heard));
     const enum lm_control_kind kind = kind_of(&heard);
-    PROVE((uint32_t)kind < LM_CONTROL_KINDS && kind != LM_CONTROL_ENVIRONMENT);
+    PROVE((uint32_t)kind < LM_CONTROL_KINDS && kind != LM_CONTROL_ENVIRONMENT &&
+          kind != LM_CONTROL_SLOTS);
     PROVE(kinds[kind].first == heard.first);
     PROVE(heard.first != LM_CONTROL_ITEM_SWITCH || kinds[kind].act == heard.word[0] ||
           (kind == LM_CONTROL_FREEZE && heard.word[0] == LM_CONTROL_SWITCH_RELEASE));

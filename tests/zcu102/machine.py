@@ -107,7 +107,7 @@ class Machine:
         self.process.stdin.flush()
 
     def run(self, until=None):
-        """Read the console to its end, or to a line that begins with `until`, answering each LOOK. Returns the lines."""
+        """Read the console to its end, or to a line that begins with `until` (or one of them), answering each LOOK. Returns the lines."""
         for raw in self.process.stdout:
             line = raw.decode("ascii", "replace").strip()
             self.lines.append(line)

@@ -36,6 +36,9 @@ def behind_pointer(graph, caller):
         return {name for name in graph.stack_bytes if plain(name) == "get_byte"}
     if caller.startswith(("drivers/", "drv_")):
         return {"zcu102_now_us"}
+    # A slot of the flash stands before the flash itself.
+    if caller.startswith("firmware/map/slot_flash"):
+        return {name for name in graph.stack_bytes if plain(name) in PORTS and name.startswith("drivers/")}
     ports = {name for name in graph.stack_bytes if plain(name) in PORTS}
     if caller.startswith(("bsp/record/", "record_")):
         return {name for name in ports if name.startswith("drivers/")} | {"bsp/zcu102/recording.c:put_line"}

@@ -1,7 +1,7 @@
 # The board in QEMU. The images are built by a make of their own, for the board; these are the tools of the PC.
 ZCU102 := $(O)/bin/tests/zcu102
 ZCU102_TOOLS := $(addprefix $(ZCU102)/,golden_flash picture_checksum scenario)
-ZCU102_TESTS := $(addprefix $(ZCU102)/,test_devices test_golden test_flight test_memory)
+ZCU102_TESTS := $(addprefix $(ZCU102)/,test_devices test_golden test_flight test_slots test_memory)
 TESTS += $(ZCU102_TESTS)
 $(O)/tests/zcu102/%.o: CFLAGS_host += -Itests/golden
 $(ZCU102)/golden_flash: $(call objs,$(addprefix tests/,zcu102/golden_flash.c golden/golden_scene.c golden/golden_signature.c)) \
@@ -16,6 +16,7 @@ zcu102-images:
 	@! command -v aarch64-linux-gnu-gcc >/dev/null || \
 	    $(call make_board,zcu102) all
 
+$(ZCU102)/test_slots: | $(O)/bin/landmass-load $(O)/bin/tests/panel-vm/glass
 $(ZCU102_TESTS): $(ZCU102)/%: tests/zcu102/%.py $(ZCU102_TOOLS) $(addprefix $(O)/bin/landmass-,sim nav) | zcu102-images
 	@mkdir -p $(@D)
 	@printf '#!/bin/sh\nexec python3 -B $<\n' >$@

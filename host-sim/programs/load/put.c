@@ -128,7 +128,7 @@ static int open_target(struct put *p, int target)
         return hs_error(path, "name another file", "is the slot itself");
     }
     slot_close(s);
-    int cause = slot_open(s, path, SLOT_TO_WRITE);
+    int cause = load_open(s, &p->places, target, SLOT_TO_WRITE);
     if (cause == 0) {
         cause = slot_lock_to_write(s);
     }
@@ -136,6 +136,7 @@ static int open_target(struct put *p, int target)
         return hs_error(path,
                         cause == EWOULDBLOCK ? "wait for the other landmass-load"
                         : cause == EACCES    ? "run it as root or as the panel's user"
+                        : p->places.chip_mib ? "name a file of the length of --chip, or a new one"
                                              : "check the option slot.a or slot.b",
                         "slot %c cannot be written: %s", load_letter(target), strerror(cause));
     }
@@ -147,9 +148,11 @@ static void report_load(const struct put *p, int target, const struct slot_load 
 {
     const struct slot *s = &p->slots[target];
     printf("slot %c: load %" PRIu64 ", %" PRIu64 " bytes written, %" PRIu64
-           " were there; every record was read back and is right\n"
-           "flown from the next start on: systemctl restart landmass-panel\n",
+           " were there; every record was read back and is right\n",
            load_letter(target), s->record.sequence, load->written_bytes, load->kept_bytes);
+    printf("%s%s\n",
+           p->places.chip_mib ? "write it to its chip: " : "flown from the next start on: ",
+           p->places.chip_mib ? s->path : "systemctl restart landmass-panel");
     hs_report_text("slot", s->path);
     hs_report_count("load", s->record.sequence);
     hs_report_count("image_bytes", s->record.image_bytes);

@@ -26,6 +26,12 @@ int load_places_find(struct load_places *p)
     return 0;
 }
 
+int load_open(struct slot *s, const struct load_places *p, int slot, enum slot_use use)
+{
+    return p->chip_mib != 0 ? slot_open_chip(s, p->path[slot], (uint64_t)p->chip_mib << 20, use)
+                            : slot_open(s, p->path[slot], use);
+}
+
 static void show_progress(void *ctx, uint64_t done, uint64_t total)
 {
     struct hs_progress *bar = ctx;
@@ -38,7 +44,7 @@ void load_judge(struct slot slots[LM_SLOTS], const struct load_places *p, enum s
     static const char *const labels[] = {"checking slot A", "checking slot B"};
     for (int i = 0; i < LM_SLOTS; i++) {
         struct hs_progress bar;
-        (void)slot_open(&slots[i], p->path[i], SLOT_TO_READ);
+        (void)load_open(&slots[i], p, i, SLOT_TO_READ);
         hs_progress_begin(&bar, labels[i], 0);
         slot_judge(&slots[i], depth, depth == SLOT_RECORDS ? show_progress : NULL, &bar);
         hs_progress_end(&bar);

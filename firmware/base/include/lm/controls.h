@@ -62,9 +62,24 @@ enum lm_control_kind {
     LM_CONTROL_DESIGNATE, /* target management switch up */
     LM_CONTROL_DROP,      /* target management switch down */
     LM_CONTROL_TRACK,     /* target management switch right: track what is at the cursor */
-    LM_CONTROL_RANGING    /* range the ground straight ahead, or end that */
+    LM_CONTROL_RANGING,   /* range the ground straight ahead, or end that */
+
+    /* No act of anybody's: what the board says of its database. */
+    LM_CONTROL_SLOTS /* slots: replaces what it said before */
 };
-enum { LM_CONTROL_KINDS = LM_CONTROL_RANGING + 1 };
+enum { LM_CONTROL_KINDS = LM_CONTROL_SLOTS + 1 };
+
+/* How far a load of a database is. */
+enum lm_load { LM_LOAD_NONE, LM_LOAD_RUNS, LM_LOAD_DONE, LM_LOAD_FAILED, LM_LOADS };
+
+/* The two slots of the database (docs/slots.md), for the BIT page. All zero: nothing is known. */
+struct lm_slots_state {
+    int32_t flown;   /* 1 slot A, 2 slot B; 0: neither */
+    int32_t damaged; /* bits 0 and 1: slot A, slot B */
+    int32_t cut_off; /* likewise: a load has not come to its end */
+    int32_t load;    /* enum lm_load */
+    int32_t percent; /* of a load that runs: 0..100 */
+};
 
 /* One act of the operator. Only the member that belongs to `kind` means anything.
  *
@@ -95,6 +110,7 @@ struct lm_control {
             int32_t x, y; /* right and up, -LM_FULL_DEFLECTION..LM_FULL_DEFLECTION; the unit
                              holds them until the next slew */
         } slew;
+        struct lm_slots_state slots;
     };
 };
 

@@ -26,12 +26,13 @@ struct lm_text lm_sender_fault(const struct lm_unit *u);
 
 /* The text of a row, 0..LM_BIT_ROWS - 1; it may be empty:
  *
- *     0..2    version, title and size of the image
+ *     0..2    version, title and size of the image; behind the version the slot that is flown, or
+ *             how far a load into the other one is
  *     3..15   counters, two in a row, each a name and its number; the last is where the radar table
  *             in use comes from, and its name
  *     16      flags that are raised now
  *     17..20  the faults that rose last, the latest first
- *     21      cause of the board's last restart
+ *     21      cause of the board's last restart, and slots that are damaged or cut off
  *     22      what the exercise has broken: no fault
  */
 struct lm_text lm_bit_row(const struct lm_unit *u, uint32_t row);

@@ -126,9 +126,10 @@ struct lm_unit {
     struct lm_canas_report report;
     struct lm_canas_control control_bus;
     struct lm_swap swap;
-    uint64_t last_bus_us;   /* arrival of the last frame that was no error report */
-    uint64_t last_bus_2_us; /* the same of can_2 */
-    bool is_restored;       /* it began with the board's settings */
+    uint64_t last_bus_us;        /* arrival of the last frame that was no error report */
+    uint64_t last_bus_2_us;      /* the same of can_2 */
+    bool is_restored;            /* it began with the board's settings */
+    struct lm_slots_state slots; /* as the board said last */
     struct {
         bool is_known;  /* there was a position */
         uint32_t jumps; /* nav.position_jumps as of the last step */
@@ -206,6 +207,11 @@ struct lm_unit {
  * - LM_ERR_RANGE: the display has less than 256 or more than 1024 pixels either way;
  * - LM_ERR_NO_MEMORY: the tile pool has room for fewer than 20 tiles. */
 int lm_unit_init(struct lm_unit *u, const struct lm_board *board);
+
+/* Say what is known of the database's slots, for the BIT page. A board that records its unit says
+ * it by the control LM_CONTROL_SLOTS instead. Returns LM_OK; or LM_ERR_RANGE, with nothing changed,
+ * if a number is outside its range. */
+int lm_unit_tell_slots(struct lm_unit *u, const struct lm_slots_state *slots);
 
 /* The present settings, for a board that keeps them for the next start, or for another display. */
 void lm_settings_give(const struct lm_unit *u, struct lm_settings *s);

@@ -3,7 +3,8 @@
  *
  * - a file, with its records in a second file "PATH.state",
  * - a block device, with its records in its last 128 KiB,
- * - an MTD device, with its records in its last two good blocks. Bad blocks are stepped over.
+ * - an MTD device, with its records in its last two good blocks. Bad blocks are stepped over,
+ * - the contents of a flash chip in a file of its length, laid out as a block device.
  *
  * The image begins at the start of each, so that every program that reads images can read it there.
  *
@@ -43,6 +44,10 @@ enum slot_use { SLOT_TO_READ, SLOT_TO_WRITE };
 /* Open a slot. To write, a file is made if it is not there. Returns 0 or an errno; the slot is then
  * absent, with the cause in fault. *s must not move, and must be closed in any case. */
 int slot_open(struct slot *s, const char *path, enum slot_use use);
+
+/* The same of a chip's contents. To write, a file that is shorter is filled up with FFh, which is
+ * erased flash. EINVAL: it has another length than chip_bytes. */
+int slot_open_chip(struct slot *s, const char *path, uint64_t chip_bytes, enum slot_use use);
 
 /* Use a medium of the caller's. */
 void slot_lend(struct slot *s, const char *path, const struct slot_medium *medium);

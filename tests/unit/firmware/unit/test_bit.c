@@ -8,7 +8,7 @@
 
 #include <string.h>
 
-enum { ROW_DATABASE = 1, ROW_NOW = 16 };
+enum { ROW_VERSION = 0, ROW_DATABASE = 1, ROW_NOW = 16, ROW_RESTART = 21 };
 
 TEST(a_row_of_the_bit_page_names_the_database)
 {
@@ -24,6 +24,62 @@ TEST(the_row_of_the_database_says_that_it_failed)
     r->image.bytes[100] ^= 1;
     assert_int_equal(lm_unit_init(&r->unit, &r->board.lent), LM_OK);
     assert_string_equal(lm_bit_row(&r->unit, ROW_DATABASE).words, "DB FAIL");
+    free_rig(r);
+}
+
+static const char *behind_the_version(struct rig *r)
+{
+    static struct lm_text row;
+    row = lm_bit_row(&r->unit, ROW_VERSION);
+    const char *image = strstr(row.words, "IMAGE V");
+    assert_non_null(image);
+    return image + strcspn(image, "0123456789") + strspn(image + strlen("IMAGE V"), "0123456789");
+}
+
+TEST(the_bit_page_says_what_the_board_knows_of_the_slots)
+{
+    static const struct {
+        struct lm_slots_state state;
+        const char *version, *restart;
+    } rows[] = {
+        {{.flown = 0}, "", "RESTART  HUNG STEP"},
+        {{.flown = 1}, "  SLOT A", "RESTART  HUNG STEP"},
+        {{.flown = 2, .damaged = 1}, "  SLOT B", "RESTART  HUNG STEP  SLOT A BAD"},
+        {{.flown = 1, .cut_off = 2}, "  SLOT A", "RESTART  HUNG STEP  SLOT B CUT OFF"},
+        {{.damaged = 3}, "", "RESTART  HUNG STEP  SLOT A BAD  SLOT B BAD"},
+        {{.flown = 1, .load = LM_LOAD_RUNS}, "  LOAD 0", "RESTART  HUNG STEP"},
+        {{.flown = 1, .load = LM_LOAD_RUNS, .percent = 100}, "  LOAD 100", "RESTART  HUNG STEP"},
+        {{.flown = 1, .load = LM_LOAD_DONE}, "  LOADED", "RESTART  HUNG STEP"},
+        {{.flown = 1, .load = LM_LOAD_FAILED}, "  LOAD FAIL", "RESTART  HUNG STEP"},
+    };
+    struct rig *r = start_rig();
+    r->board.lent.restart = "HUNG STEP";
+    for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
+        assert_int_equal(lm_unit_tell_slots(&r->unit, &rows[i].state), LM_OK);
+        assert_string_equal(behind_the_version(r), rows[i].version);
+        assert_string_equal(lm_bit_row(&r->unit, ROW_RESTART).words, rows[i].restart);
+        assert_true(lm_bit_row(&r->unit, ROW_VERSION).length <= 34); /* of the smallest glass */
+    }
+    r->board.lent.restart = NULL;
+    const struct lm_slots_state bad = {.flown = 2, .damaged = 1};
+    assert_int_equal(lm_unit_tell_slots(&r->unit, &bad), LM_OK);
+    assert_string_equal(lm_bit_row(&r->unit, ROW_RESTART).words, "SLOT A BAD");
+    free_rig(r);
+}
+
+TEST(a_number_of_the_slots_outside_its_range_changes_nothing)
+{
+    static const struct lm_slots_state bad[] = {
+        {.flown = 3},    {.flown = -1},      {.damaged = 4}, {.damaged = -1},  {.cut_off = 4},
+        {.cut_off = -1}, {.load = LM_LOADS}, {.load = -1},   {.percent = 101}, {.percent = -1},
+    };
+    struct rig *r = start_rig();
+    const struct lm_slots_state sound = {.flown = 2, .load = LM_LOAD_RUNS, .percent = 42};
+    assert_int_equal(lm_unit_tell_slots(&r->unit, &sound), LM_OK);
+    for (size_t i = 0; i < sizeof bad / sizeof *bad; i++) {
+        assert_int_equal(lm_unit_tell_slots(&r->unit, &bad[i]), LM_ERR_RANGE);
+        assert_string_equal(behind_the_version(r), "  LOAD 42");
+    }
     free_rig(r);
 }
 
