@@ -59,6 +59,15 @@ static struct lm_slot_record read_record(const struct look *l, uint32_t slot)
     return found ? *found : (struct lm_slot_record){.version = 0};
 }
 
+/* By the record alone. One that is whole has the number of a load. */
+static enum lm_slot_verdict verdict_of(const struct lm_slot_record *record)
+{
+    if (record->state != LM_SLOT_WHOLE) {
+        return record->state == 0 ? LM_SLOT_EMPTY : LM_SLOT_CUT_OFF;
+    }
+    return record->sequence == 0 ? LM_SLOT_DAMAGED : LM_SLOT_STANDS_BY;
+}
+
 /* lm_db_open has not looked at the place of those that it does not use. */
 static bool section_fits(const struct look *l, const struct lm_image_section *s)
 {
@@ -147,9 +156,7 @@ void lm_slot_flash_open(struct lm_slot_flash *f, const struct lm_flash *flash, s
     for (uint32_t i = 0; i < LM_SLOTS; i++) {
         records[i] = read_record(&l, i);
         f->slot[i].sequence = records[i].state == LM_SLOT_WHOLE ? records[i].sequence : 0;
-        f->slot[i].verdict = records[i].state == 0               ? LM_SLOT_EMPTY
-                             : records[i].state == LM_SLOT_WHOLE ? LM_SLOT_STANDS_BY
-                                                                 : LM_SLOT_CUT_OFF;
+        f->slot[i].verdict = verdict_of(&records[i]);
     }
     if (!choose(&l, records)) {
         set_port(f, 0, f->slot[0].verdict == LM_SLOT_EMPTY ? flash->size_bytes : 0);

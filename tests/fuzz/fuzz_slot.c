@@ -1,7 +1,10 @@
 /* A slot of any bytes: its two records, and the image in it. The first byte of the input says which
- * checksums are put right. What is whole at the greater depth is whole at the lesser. */
+ * checksums are put right. What is whole at the greater depth is whole at the lesser, and is flown
+ * by a board that has the same bytes in half of its flash. */
 #include "fuzz.h"
 #include "lm/image.h"
+#include "lm/slot_flash.h"
+#include "memory_flash.h"
 #include "seal.h"
 #include "slots/slot.h"
 
@@ -59,6 +62,28 @@ static void fill(struct slot_bytes *b, struct fuzz_supply *s, uint8_t parts)
     }
 }
 
+/* The same bytes in slot A of a flash; slot B is erased. */
+static void fly(const struct slot_bytes *b, bool is_whole)
+{
+    enum { HALF = 256 << 10, ROOM = HALF - LM_SLOT_COPIES * LM_SLOT_RECORD_STEP };
+    static uint8_t bytes[LM_SLOTS * HALF];
+    static uint64_t scratch[LM_SLOT_SCRATCH_BYTES / 8];
+    static struct lm_db db;
+    struct memory_flash flash;
+    struct lm_slot_flash slots;
+    const size_t size = b->size < ROOM ? b->size : ROOM;
+    memset(bytes, 0xff, HALF);
+    memcpy(bytes, b->image, size);
+    for (size_t i = 0; i < LM_SLOT_COPIES; i++) {
+        memcpy(bytes + ROOM + i * LM_SLOT_RECORD_STEP, &b->copies[i], sizeof b->copies[i]);
+    }
+    memory_flash_open(&flash, bytes, sizeof bytes);
+    lm_slot_flash_open(&slots, &flash.port, &db, scratch, sizeof scratch, 10);
+    FUZZ_ASSERT(!is_whole || b->size > ROOM || slots.slot[0].verdict == LM_SLOT_FLOWN);
+    FUZZ_ASSERT(slots.slot[1].verdict == LM_SLOT_EMPTY);
+    FUZZ_ASSERT(slots.port.size_bytes <= sizeof bytes);
+}
+
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
 {
     struct fuzz_supply supply = {data, size};
@@ -76,6 +101,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
     }
     FUZZ_ASSERT(slots[0].verdict != SLOT_WHOLE || slots[1].verdict == SLOT_WHOLE);
     (void)slot_choose(slots);
+    fly(&bytes, slots[0].verdict == SLOT_WHOLE && slots[0].record.sequence != 0);
     free(bytes.image);
     return 0;
 }

@@ -183,6 +183,13 @@ TEST_WITH(an_image_of_a_length_that_reaches_into_the_records_is_not_flown, erase
     assert_verdicts(LM_SLOT_DAMAGED, LM_SLOT_EMPTY);
 }
 
+TEST_WITH(a_record_without_the_number_of_a_load_is_damaged, erase, NULL)
+{
+    fill(0, 0, 0);
+    assert_int_equal(flown(), NONE);
+    assert_verdicts(LM_SLOT_DAMAGED, LM_SLOT_EMPTY);
+}
+
 TEST_WITH(a_flash_without_slots_is_one_image, erase, NULL)
 {
     memcpy(flash_bytes, images[0].bytes, images[0].size);
