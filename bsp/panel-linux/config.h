@@ -44,7 +44,7 @@ struct config_stick {
 
 /* Values of the options. An empty name means none, or the driver's choice. */
 struct config {
-    char slot_a[CONFIG_PATH], slot_b[CONFIG_PATH];
+    char slot_a[CONFIG_PATH], slot_b[CONFIG_PATH], slot_progress[CONFIG_PATH];
     char database[CONFIG_PATH];
     char database_key[CONFIG_PATH], database_serial[CONFIG_PATH];
     uint32_t database_trust; /* 1: any */

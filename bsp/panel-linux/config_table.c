@@ -26,6 +26,9 @@ const struct config_row config_table[] = {
         "writes. Of two slots the one of the later load that is whole is flown."),
     OPTION(CONFIG_PATH_TO, slot_b, 0, ROOM(slot_b), "none", "slot.b", "PATH | none", SLOT_B,
            "Second slot."),
+    OPTION(CONFIG_PATH_TO, slot_progress, 0, ROOM(slot_progress), "none", "slot.progress",
+           "PATH | none", SLOT_PROGRESS,
+           "Where landmass-load says how far it is, for the BIT page. A file in memory."),
     OPTION(CONFIG_PATH_TO, database, 0, ROOM(database), NULL, "database", "PATH",
            "/var/lib/landmass-panel/database.lmdb",
            "Where no slot is whole: the database in flash, a file, or an MTD device such as "

@@ -158,6 +158,7 @@ static void show_lamps(struct panel *p)
 void panel_step(struct panel *p, uint64_t now_us)
 {
     bezel_service(&p->bezel, now_us);
+    slots_told_service(&p->slots, now_us);
     glass_service(&p->glass, now_us);
     recording_step(&p->recording, now_us);
     lm_unit_step(p->unit, now_us);

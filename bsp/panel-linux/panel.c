@@ -47,7 +47,7 @@ static const struct lm_flash *open_flash(struct panel *p)
 static int next_control(void *ctx, struct lm_control *control)
 {
     struct panel *p = ctx;
-    return drv_control_ring_take(&p->bezel.ring, control) ||
+    return slots_told_next(&p->slots, control) || drv_control_ring_take(&p->bezel.ring, control) ||
            drv_control_ring_take(&p->hand.ring, control);
 }
 
@@ -248,6 +248,7 @@ int panel_open(struct panel *p, const struct config *config)
     p->signals = open_signals();
     p->controls = (struct lm_controls){.ctx = p, .next = next_control};
     const struct lm_flash *flash = open_flash(p);
+    slots_told_open(&p->slots, &p->storage, config->slot_progress);
     bezel_open(&p->bezel, config, panel_now_us(p));
     hand_open(&p->hand, config);
     open_recording(p);

@@ -15,6 +15,7 @@
 #include "lm/unit.h"
 #include "recording.h"
 #include "settings_file.h"
+#include "slots_told.h"
 #include "storage.h"
 
 enum {
@@ -26,6 +27,7 @@ struct panel {
     const struct config *config; /* borrowed */
     uint64_t zero_us;            /* time of CLOCK_MONOTONIC at which the panel's clock is 0 */
     struct storage storage;
+    struct slots_told slots;
     struct drv_flash_reader flash;
     struct database database;
     struct bus bus, bus_2;

@@ -3,7 +3,7 @@ LIB_panel := $(O)/libpanel.a
 $(call archive, $(LIB_panel), $(filter-out %/main.c,$(wildcard bsp/panel-linux/*.c)))
 # It reads tables of the bus and slots, and checks signatures, by the libraries of the tools.
 PANEL_READER := $(call objs,host-sim/bus/table_text.c \
-    $(patsubst %,host-sim/slots/%.c,check medium_file medium_mtd slot) \
+    $(patsubst %,host-sim/slots/%.c,check medium_file medium_mtd progress slot) \
     $(patsubst %,host-sim/trust/%.c,crypto head keys seal serial verify) \
     $(patsubst %,host-sim/lib/%.c,atomic_file durable_file error input_file json number output_path real_time report whole_file))
 $(O)/bsp/panel-linux/%.o $(O)/sanitized/bsp/panel-linux/%.o: EXTRA_CFLAGS := \

@@ -158,6 +158,7 @@ const struct lm_flash *storage_open(struct storage *d, const struct config *conf
     *verdict = (struct database){.is_flown = true};
     judge(d, config);
     const int flown = choose_accepted(d, config, is_check, verdict);
+    d->flown = flown;
     for (int i = 0; i < LM_SLOTS; i++) {
         tell(&d->slots[i], i, flown);
         if (i != flown) {
@@ -174,6 +175,16 @@ const struct lm_flash *storage_open(struct storage *d, const struct config *conf
         *verdict = database_judge(config, plain, is_check);
     }
     return plain != NULL && verdict->is_flown ? plain : NULL;
+}
+
+struct lm_slots_state storage_state(const struct storage *d)
+{
+    struct lm_slots_state state = {.flown = d->flown + 1};
+    for (int i = 0; i < LM_SLOTS; i++) {
+        state.damaged |= (d->slots[i].verdict == SLOT_DAMAGED) << i;
+        state.cut_off |= (d->slots[i].verdict == SLOT_CUT_OFF) << i;
+    }
+    return state;
 }
 
 void storage_close(struct storage *d)

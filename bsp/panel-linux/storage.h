@@ -7,12 +7,14 @@
 #include "database.h"
 #include "drv/flash_file.h"
 #include "drv/flash_mtd.h"
+#include "lm/controls.h"
 #include "slots/slot.h"
 
 struct storage {
     struct slot slots[LM_SLOTS]; /* the one that is flown stays open, and locked */
     struct drv_flash_mtd mtd;    /* of the option `database`, as the file */
     struct drv_flash_file file;
+    int flown;           /* number of the slot; -1: none */
     const char *path;    /* of what is flown, for messages; borrowed from the config */
     const char *trouble; /* why it is not what it should be, for the status; NULL: it is */
 };
@@ -25,6 +27,9 @@ struct storage {
 const struct lm_flash *storage_open(struct storage *d, const struct config *config, bool is_check,
                                     struct database *verdict);
 void storage_close(struct storage *d);
+
+/* The slots as they were found at the start. */
+struct lm_slots_state storage_state(const struct storage *d);
 
 /* For --check: opens what would be flown, and closes it. False if its signature is refused. */
 bool storage_check(const struct config *config);

@@ -26,6 +26,9 @@ static int take_line(struct slot_places *places, struct db_text_file *f)
         return is_none ? db_text_error(f, "name a file or a device", "the panel has no slots")
                        : take_path(f, places->path[!is_a], value);
     }
+    if (strcmp(key, "slot.progress") == 0) {
+        return take_path(f, places->progress, is_none ? "" : value);
+    }
     if (strcmp(key, "database.key") == 0) {
         return take_path(f, places->key, is_none ? "" : value);
     }
@@ -43,7 +46,8 @@ static int take_line(struct slot_places *places, struct db_text_file *f)
 int slot_places_read(struct slot_places *places, const char *config)
 {
     struct db_text_file f;
-    *places = (struct slot_places){.path = {SLOT_A, SLOT_B}, .serial = SLOT_SERIAL};
+    *places = (struct slot_places){
+        .path = {SLOT_A, SLOT_B}, .serial = SLOT_SERIAL, .progress = SLOT_PROGRESS};
     if (strcmp(config, SLOT_CONFIG) == 0 && access(config, F_OK) != 0) {
         return 0;
     }

@@ -9,6 +9,7 @@
 #include "hs/report.h"
 #include "lm/image.h"
 #include "slots/load.h"
+#include "slots/progress.h"
 
 #include <errno.h>
 #include <inttypes.h>
@@ -26,6 +27,7 @@ struct put {
     struct drv_flash_file source;
     struct slot slots[LM_SLOTS];
     struct hs_progress bar;
+    struct slot_teller teller;
     const char *label; /* of the bar */
     const char *key;   /* options; NULL: of the configuration */
     bool is_any, is_older;
@@ -41,6 +43,12 @@ static void move_bar(struct put *p, const char *label, uint64_t done, uint64_t t
     hs_progress_update(&p->bar, done);
 }
 
+/* Writing is the first half of what a panel shows, checking the second. */
+static void tell(struct put *p, int32_t half, uint64_t done, uint64_t total)
+{
+    slot_teller_run(&p->teller, half + (total == 0 ? 0 : (int32_t)(done * 49 / total)));
+}
+
 static void checking_file(void *ctx, uint64_t done, uint64_t total)
 {
     move_bar(ctx, "checking the file", done, total);
@@ -49,11 +57,13 @@ static void checking_file(void *ctx, uint64_t done, uint64_t total)
 static void writing(void *ctx, uint64_t done, uint64_t total)
 {
     move_bar(ctx, "writing", done, total);
+    tell(ctx, 0, done, total);
 }
 
 static void checking_slot(void *ctx, uint64_t done, uint64_t total)
 {
     move_bar(ctx, "checking the slot", done, total);
+    tell(ctx, 50, done, total);
 }
 
 static int open_file(struct put *p)
@@ -172,6 +182,25 @@ static int report_there(const struct put *p, int slot)
     return 0;
 }
 
+/* Write the slot and switch to it. */
+static int fill(struct put *p, int target, struct slot_load *load)
+{
+    struct slot *s = &p->slots[target];
+    int result = slot_fill(s, &p->source.port, writing, checking_slot, p, load);
+    hs_progress_end(&p->bar);
+    if (result == 0 && load_accept(&p->places.places, s->path, &s->port, LOAD_FULL) != 0) {
+        return -1;
+    }
+    if (result == 0) {
+        result = slot_switch(s, &p->slots[target ^ 1], load);
+    }
+    return result == 0
+               ? 0
+               : hs_error(s->path, "the other slot is flown as before; run it again to go on",
+                          "slot %c: offset 0x%" PRIx64 ": %s", load_letter(target),
+                          load->fault.offset, load->fault.cause);
+}
+
 static int put(struct put *p)
 {
     struct slot_load load;
@@ -183,22 +212,13 @@ static int put(struct put *p)
     if (target < 0 || open_target(p, target) != 0) {
         return -1;
     }
-    struct slot *s = &p->slots[target];
-    int result = slot_fill(s, &p->source.port, writing, checking_slot, p, &load);
-    hs_progress_end(&p->bar);
-    if (result == 0 && load_accept(&p->places.places, s->path, &s->port, LOAD_FULL) != 0) {
-        return -1;
-    }
+    slot_teller_open(&p->teller, p->places.chip_mib != 0 ? "" : p->places.places.progress);
+    const int result = fill(p, target, &load);
+    slot_teller_end(&p->teller, result == 0 ? LM_LOAD_DONE : LM_LOAD_FAILED);
     if (result == 0) {
-        result = slot_switch(s, &p->slots[target ^ 1], &load);
+        report_load(p, target, &load);
     }
-    if (result != 0) {
-        return hs_error(s->path, "the other slot is flown as before; run it again to go on",
-                        "slot %c: offset 0x%" PRIx64 ": %s", load_letter(target), load.fault.offset,
-                        load.fault.cause);
-    }
-    report_load(p, target, &load);
-    return 0;
+    return result;
 }
 
 static int take_options(struct put *p)

@@ -1,6 +1,7 @@
 /* The whole panel, without devices and with a bus and a flash: what it does in its loop, and what
  * it must not do there. The kernel's side of each device is tested in the virtual machine. */
 #include "check.h"
+#include "lm/bit.h"
 #include "lm/radar_record.h"
 #include "panel.h"
 #include "shown.h"
@@ -225,6 +226,61 @@ TEST(what_a_panel_recorded_is_shown_again_bit_for_bit)
     assert_int_equal(a.wrong, 0);
     assert_int_equal(a.departures + a.checks_failed, 0);
     assert_true(a.has_ended && a.checks >= 6);
+    drv_flash_file_close(&flash);
+    land(f);
+}
+
+static bool is_on_bit_page(const struct flight *f, const char *words)
+{
+    for (uint32_t row = 0; row < LM_BIT_ROWS; row++) {
+        if (strstr(lm_bit_row(f->panel.unit, row).words, words) != NULL) {
+            return true;
+        }
+    }
+    return false;
+}
+
+TEST(how_far_a_load_is_stands_on_the_bit_page_and_in_the_recording)
+{
+    enum { BIT_KEY = 12 };
+    static struct shown shown;
+    struct slot_teller loader;
+    struct flight *f = take_off();
+    char path[200];
+    path_in_build(path, sizeof path, "panel-load");
+    unlink(path);
+    f->shown = &shown;
+    f->panel.slots.progress = path;
+    drv_control_ring_put(&f->panel.hand.ring, lm_control_button(true, BIT_KEY));
+    fly(f, 0.2);
+    drv_control_ring_put(&f->panel.hand.ring, lm_control_button(false, BIT_KEY));
+    fly(f, 1);
+    assert_false(is_on_bit_page(f, "LOAD"));
+    slot_teller_open(&loader, path);
+    slot_teller_run(&loader, 42);
+    fly(f, 1);
+    assert_true(is_on_bit_page(f, "  LOAD 42"));
+    slot_teller_run(&loader, 43);
+    fly(f, 1);
+    assert_true(is_on_bit_page(f, "  LOAD 43"));
+    slot_teller_end(&loader, LM_LOAD_FAILED);
+    fly(f, 1);
+    assert_true(is_on_bit_page(f, "  LOAD FAIL"));
+    slot_teller_open(&loader, path);
+    slot_teller_end(&loader, LM_LOAD_DONE);
+    fly(f, 1);
+    assert_true(is_on_bit_page(f, "  LOADED"));
+    unlink(path);
+    fly(f, 1);
+    assert_false(is_on_bit_page(f, "LOAD"));
+    struct drv_flash_file flash;
+    assert_int_equal(drv_flash_file_open(&flash, f->config.database), 0);
+    switch_off(f);
+    snprintf(path, sizeof path, "%s/flight-00001-000.log", f->config.record);
+    const struct shown_again a = show_again(path, &flash.port, NULL, &shown);
+    assert_string_equal(a.error, "");
+    assert_true(a.pictures == shown.count && a.pictures > 150);
+    assert_int_equal(a.wrong + a.departures + a.checks_failed, 0);
     drv_flash_file_close(&flash);
     land(f);
 }
