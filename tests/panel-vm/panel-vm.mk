@@ -10,6 +10,7 @@ $(PANEL_VM)/count_malloc.so: LDFLAGS := -shared
 
 PANEL_VM_TESTS := $(addprefix $(PANEL_VM)/,test_bus test_panel test_flash test_two test_dis)
 ifeq ($(BOARD),bench-linux)
+PANEL_VM_TESTS += $(PANEL_VM)/test_loads
 TESTS += $(PANEL_VM_TESTS)
 endif
 $(PANEL_VM_TESTS): $(PANEL_VM)/%: tests/panel-vm/%.py $(PANEL_VM)/glass $(addprefix $(O)/bin/landmass-,sim nav db dis) \
@@ -18,11 +19,17 @@ $(PANEL_VM_TESTS): $(PANEL_VM)/%: tests/panel-vm/%.py $(PANEL_VM)/glass $(addpre
 	@printf '#!/bin/sh\nexec python3 -B %s "$$@"\n' $< >$@
 	@chmod +x $@
 
+$(PANEL_VM)/test_loads: $(addprefix $(O)/bin/landmass-,load scene)
+
+kills: deps ## Kill 300 virtual machines while they load a database (KILLS=300, LANDMASS_SEED=1)
+	@$(MAKE) --no-print-directory -j2 $(PANEL_VM)/test_loads
+	@LANDMASS_VM_KILLS=$(or $(KILLS),300) $(PANEL_VM)/test_loads killed
+
 bench-panel: deps ## Measure the panel in QEMU: nav frame to glass, regularity, processor, memory
 	@$(MAKE) --no-print-directory -j2 $(PANEL_VM_TESTS)
 	@python3 -B tests/panel-vm/bench_panel.py
 
-.PHONY: bench-panel panel-vm-guest panel-vm-programs check-panel-built
+.PHONY: kills bench-panel panel-vm-guest panel-vm-programs check-panel-built
 # One after the other, because golden pictures and guest are built in one folder.
 panel-vm-guest: | golden-arm64
 	@$(call make_board,panel-linux) ARCH=amd64 panel-package >/dev/null
