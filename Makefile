@@ -29,7 +29,7 @@ $(call archive, $(LIB_support), $(wildcard tests/support/*.c))
 make_board = env $(patsubst %,-u %,MAKEFLAGS MAKEOVERRIDES CC OPT OPT_core LDFLAGS) $(MAKE) --no-print-directory -j2 BOARD=$(1)
 
 .PHONY: help deps all run check check-clang check-panel panel package bench gallery fuzz rooms lint format clean
-.PHONY: cuts web zcu102 run-zcu102 size bench-zcu102 coverage figures prove
+.PHONY: cuts reproduce web zcu102 run-zcu102 size bench-zcu102 coverage figures prove
 
 help: ## Print this menu
 	@echo 'landmass: make TARGET'
@@ -63,6 +63,9 @@ package: deps ## Build the Debian packages in build/packages: the panel for arm6
 	@$(MAKE) --no-print-directory BOARD=panel-linux ARCH=amd64 panel-package
 	@$(MAKE) --no-print-directory BOARD=panel-linux ARCH=arm64 panel-package
 	@$(MAKE) --no-print-directory O=build/tools HAS_AVX2= tools-package
+
+reproduce: deps ## Build the Debian packages twice, in two folders: the same, bit by bit? Part of .ci/run
+	@sh host-sim/package/reproduce.sh
 
 check-clang: deps ## Unit tests and golden pictures once more, built by CLANG (clang-19); like check, part of .ci/run
 	@$(MAKE) --no-print-directory -j2 CC=$(CLANG) O=build/$(CLANG) check-unit

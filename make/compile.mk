@@ -40,6 +40,9 @@ $(O)/%.a:
 	$(call say,AR,$@)
 	$(Q)$(AR) rcs $@ $^
 
+# A build id covers debug information, which names the building folder: installed programs go without (make reproduce).
+$(O)/bin/landmass-%: LDFLAGS += -Wl,--build-id=none
+
 # Objects, archives in whatever order, then what LDLIBS says for this target.
 $(O)/bin/%:
 	@mkdir -p $(@D)
