@@ -1,6 +1,7 @@
 #include "panel.h"
 
 #include "drv/not_fitted.h"
+#include "ended.h"
 #include "hs/real_time.h"
 #include "lm/bus_filters.h"
 #include "lm/radar_record.h"
@@ -228,7 +229,7 @@ static void open_watchdog(struct panel *p)
     if (drv_watchdog_open(&p->watchdog, device, p->config->watchdog_s, panel_now_us(p)) != LM_OK) {
         report(REPORT_ERROR, "watchdog: %s", p->watchdog.error);
     }
-    p->board.restart = p->watchdog.has_bitten ? "WATCHDOG" : NULL;
+    p->board.restart = p->watchdog.has_bitten ? "WATCHDOG" : ended_cause();
 }
 
 static void open_recording(struct panel *p)

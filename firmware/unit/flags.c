@@ -93,6 +93,12 @@ static bool is_bus_silent(const struct lm_unit *u, uint64_t now_us)
            (u->board->can_2 && now_us - u->last_bus_2_us > LM_BUS_SILENT_US);
 }
 
+/* By itself, or by whoever had it begin with the settings of before. */
+static bool has_restarted(const struct lm_unit *u)
+{
+    return u->is_restored || u->board->restart != NULL;
+}
+
 uint32_t lm_update_flags(struct lm_unit *u, uint64_t now_us)
 {
     const uint32_t flags =
@@ -105,7 +111,7 @@ uint32_t lm_update_flags(struct lm_unit *u, uint64_t now_us)
         (u->malfunctions.now.set != 0 ? LM_FLAG_MALFUNCTION : 0u) |
         (u->board->is_database_unsigned ? LM_FLAG_UNSIGNED : 0u) |
         (now_us < u->unable.until_us ? LM_FLAG_UNABLE : 0u) |
-        (u->is_restored && now_us < LM_RESTART_SHOWN_US ? LM_FLAG_RESTART : 0u) |
+        (has_restarted(u) && now_us < LM_RESTART_SHOWN_US ? LM_FLAG_RESTART : 0u) |
         (is_bus_silent(u, now_us) ? LM_FLAG_BUS : 0u);
     const uint32_t risen = flags & ~u->flags;
     lm_fault_log_add(&u->faults, risen, now_us);

@@ -36,7 +36,7 @@ enum lm_flag {
     LM_FLAG_SENDER = 1 << 13,   /* a sender of the bus is stuck, has a rival, or is contradicted */
     LM_FLAG_MALFUNCTION = 1 << 14, /* the exercise has broken something: not written over the
                                       picture */
-    LM_FLAG_RESTART = 1 << 15,     /* the display has restarted, with the settings of before */
+    LM_FLAG_RESTART = 1 << 15,     /* the display has restarted */
     LM_FLAG_UNSIGNED = 1 << 16,    /* the board does not know who made the database */
     LM_FLAG_POLE = 1 << 17         /* too near to a pole: the picture is removed */
 };
