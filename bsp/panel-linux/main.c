@@ -1,4 +1,5 @@
 /* landmass-panel: the display unit's firmware as an installed cockpit panel. */
+#include "check_devices.h"
 #include "config.h"
 #include "panel.h"
 #include "report.h"
@@ -16,12 +17,12 @@
 #include <string.h>
 #include <unistd.h>
 
-enum { EXIT_DONE = 0, EXIT_FAILED = 1, EXIT_USAGE = 2 };
+enum { EXIT_DONE = 0, EXIT_FAILED = 1, EXIT_USAGE = 2, EXIT_DEVICES = 3 };
 static const char default_path[] = "/etc/landmass-panel.conf";
 
 static const char help[] =
     "Usage: landmass-panel [--config FILE]\n"
-    "       landmass-panel --check [--config FILE]\n"
+    "       landmass-panel --check [--devices] [--config FILE]\n"
     "\n"
     "Run the display unit's firmware on this machine's bus, keys, hand controller and glass.\n"
     "\n"
@@ -29,17 +30,20 @@ static const char help[] =
     "  --check        read the configuration and check the database's signature, report what is "
     "wrong, and\n"
     "                 end\n"
+    "  --devices      with --check: try the devices, too; a panel that runs is not disturbed, and "
+    "what\n"
+    "                 it holds is not tried\n"
     "  --options      print every option of the configuration with its default\n"
     "  --version      print the version\n"
     "  -h, --help     this text\n"
     "\n"
     "SIGTERM, SIGINT and SIGHUP stop it; SIGUSR1 reports its counters.\n"
     "Exit codes: 0 stopped by a signal, or the check found nothing; 1 failed; 2 wrong command "
-    "line.\n";
+    "line; 3 a device has a fault.\n";
 
 struct command {
     const char *path;
-    bool is_path_given, is_check;
+    bool is_path_given, is_check, tries_devices;
 };
 
 static void print_options(void)
@@ -54,9 +58,13 @@ static void print_options(void)
 static int read_command_line(struct command *c, int argc, char **argv)
 {
     static const struct option options[] = {
-        {"config", required_argument, NULL, 'c'}, {"check", no_argument, NULL, 'k'},
-        {"options", no_argument, NULL, 'o'},      {"version", no_argument, NULL, 'v'},
-        {"help", no_argument, NULL, 'h'},         {0},
+        {"config", required_argument, NULL, 'c'},
+        {"check", no_argument, NULL, 'k'},
+        {"devices", no_argument, NULL, 'd'},
+        {"options", no_argument, NULL, 'o'},
+        {"version", no_argument, NULL, 'v'},
+        {"help", no_argument, NULL, 'h'},
+        {0},
     };
     *c = (struct command){.path = default_path};
     opterr = 0; /* the words are ours */
@@ -69,6 +77,9 @@ static int read_command_line(struct command *c, int argc, char **argv)
             break;
         case 'k':
             c->is_check = true;
+            break;
+        case 'd':
+            c->tries_devices = true;
             break;
         case 'o':
             print_options();
@@ -89,6 +100,10 @@ static int read_command_line(struct command *c, int argc, char **argv)
     if (optind < argc) {
         report(REPORT_ERROR, "command line: \"%s\" is not an option; landmass-panel --help",
                argv[optind]);
+        return EXIT_USAGE;
+    }
+    if (c->tries_devices && !c->is_check) {
+        report(REPORT_ERROR, "command line: --devices needs --check; landmass-panel --help");
         return EXIT_USAGE;
     }
     return -1;
@@ -147,6 +162,13 @@ static bool are_files_sound(const struct config *config)
     return storage_check(config) && is_sound;
 }
 
+static int check(const struct command *c, const struct config *config, int wrong)
+{
+    const bool is_sound = wrong == 0 && are_files_sound(config);
+    const int faults = wrong >= 0 && c->tries_devices ? check_devices(config) : 0;
+    return !is_sound ? EXIT_FAILED : faults > 0 ? EXIT_DEVICES : EXIT_DONE;
+}
+
 int main(int argc, char **argv)
 {
     struct config config;
@@ -159,7 +181,7 @@ int main(int argc, char **argv)
     }
     const int wrong = read_config(&command, &config);
     if (wrong < 0 || command.is_check) {
-        return wrong == 0 && are_files_sound(&config) ? EXIT_DONE : EXIT_FAILED;
+        return check(&command, &config, wrong);
     }
     if (wrong > 0) {
         report(REPORT_WARNING, "%s: %d wrong lines; their options keep the defaults", command.path,

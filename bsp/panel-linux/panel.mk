@@ -8,6 +8,7 @@ PANEL_READER := $(call objs,host-sim/bus/table_text.c \
     $(patsubst %,host-sim/lib/%.c,atomic_file durable_file error input_file json number output_path real_time report whole_file))
 $(O)/bsp/panel-linux/%.o $(O)/sanitized/bsp/panel-linux/%.o: EXTRA_CFLAGS := \
     $(patsubst %,-Ihost-sim/%/include,bus lib slots trust)
+$(O)/bsp/panel-linux/check_devices.o: EXTRA_CFLAGS += $(call pkgs,cflags,libdrm)
 PANEL := $(O)/bin/landmass-panel
 PROGRAMS += $(PANEL)
 $(PANEL): $(O)/bsp/panel-linux/main.o $(PANEL_READER) $(LIB_panel) $(LIB_record) $(LIB_drivers) $(LIB_firmware) $(LIB_fixed)

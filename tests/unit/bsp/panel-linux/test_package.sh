@@ -42,6 +42,11 @@ head -c 70000 /dev/zero | tr '\0' '#' >"$work/long.conf"
 ends_with 1 --check --config "$work/long.conf" && grep -q 'longer than 64 KiB' "$work/said"
 result $? 'a file that is too long is refused'
 
+printf 'glass = none\ncan = nosuch0\nrecord = none\ndatabase.serial = none\n' >"$work/devices.conf"
+ends_with 3 --check --devices --config "$work/devices.conf" && grep -q 'can: nosuch0: no such interface' "$work/said" &&
+    ends_with 0 --check --config "$work/devices.conf" && ends_with 2 --devices
+result $? '--check --devices ends with 3 and names the device; --check alone reads files'
+
 if ! command -v dpkg-deb >/dev/null; then
     echo "ok $((number + 1)) # SKIP the Debian package"
     echo '# skipped: dpkg-deb is missing: this is no Debian system'
