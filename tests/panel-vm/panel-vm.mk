@@ -8,7 +8,7 @@ $(O)/tests/panel-vm/count_malloc.o: EXTRA_CFLAGS := -fPIC
 $(PANEL_VM)/count_malloc.so: $(O)/tests/panel-vm/count_malloc.o
 $(PANEL_VM)/count_malloc.so: LDFLAGS := -shared
 
-PANEL_VM_TESTS := $(addprefix $(PANEL_VM)/,test_bus test_panel test_flash test_two test_dis test_gpiod2)
+PANEL_VM_TESTS := $(addprefix $(PANEL_VM)/,test_bus test_panel test_flash test_two test_dis test_systemd test_gpiod2)
 ifeq ($(BOARD),bench-linux)
 PANEL_VM_TESTS += $(PANEL_VM)/test_loads
 TESTS += $(PANEL_VM_TESTS)
