@@ -110,7 +110,7 @@ static const char *fault_of(const struct bus_link *link)
 
 bool check_bus(const char *option, const char *interface)
 {
-    struct bus_link link;
+    struct bus_link link = {0};
     if (interface[0] == '\0') {
         return true;
     }
