@@ -108,6 +108,8 @@ def watch(b, name):
 
 def the_page_changes_between_displays_and_has_the_pictures_of_each(left, _right, panels):
     here = left.driver.current_window_handle
+    left.find("tab-displays").click()
+    left.until("document.querySelectorAll('#display-list a').length === 2")
     left.driver.find_element("css selector", "#display-list li:nth-child(2) a").click()
     repeater = next(w for w in left.driver.window_handles if w != here)
     left.driver.switch_to.window(repeater)
