@@ -109,9 +109,10 @@ void zcu102_open(struct zcu102 *z)
     open_console(z);
     open_devices(z);
     z->supervisor.watchdog = &z->watchdog;
+    zcu102_tell_slots(z);
     z->lent = (struct lm_board){.flash = &z->slots.port,
                                 .can = &z->can.port,
-                                .controls = &z->bezel.port,
+                                .controls = &z->controls,
                                 .display = &z->display.port,
                                 .tile_pool = tile_pool,
                                 .tile_pool_bytes = sizeof tile_pool,
@@ -128,7 +129,6 @@ int zcu102_start(struct zcu102 *z)
     zcu102_recording_begin(&z->recording, &z->bezel_line, &z->console, &z->lent);
     const int status = lm_unit_init(&z->unit, &z->lent);
     if (status == LM_OK) {
-        zcu102_show_slots(z);
         drv_timer_init(&z->timer);
         z->supervisor.next_us = ZCU102_SUPERVISION_US;
         z->is_supervised = true;

@@ -38,6 +38,8 @@ struct zcu102 {
     struct drv_can can;
     struct drv_flash flash;
     struct lm_slot_flash slots;
+    struct lm_controls controls; /* the bezel's, behind what is known of the slots */
+    bool are_slots_told;
     struct drv_display display;
     struct drv_watchdog watchdog;
     struct zcu102_supervisor supervisor;

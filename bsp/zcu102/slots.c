@@ -34,16 +34,33 @@ void zcu102_choose_slot(struct zcu102 *z, void *scratch, uint32_t scratch_bytes)
     }
 }
 
-void zcu102_show_slots(struct zcu102 *z)
+static struct lm_slots_state state_of(const struct lm_slot_flash *slots)
 {
     struct lm_slots_state state = {.flown = 0};
     for (int32_t i = 0; i < LM_SLOTS; i++) {
-        const enum lm_slot_verdict verdict = z->slots.slot[i].verdict;
+        const enum lm_slot_verdict verdict = slots->slot[i].verdict;
         if (verdict == LM_SLOT_FLOWN) {
             state.flown = i + 1;
         }
         state.damaged |= (verdict == LM_SLOT_DAMAGED) << i;
         state.cut_off |= (verdict == LM_SLOT_CUT_OFF) << i;
     }
-    (void)lm_unit_tell_slots(&z->unit, &state);
+    return state;
+}
+
+static int next_control(void *ctx, struct lm_control *control)
+{
+    struct zcu102 *z = ctx;
+    if (z->are_slots_told) {
+        return z->bezel.port.next(z->bezel.port.ctx, control);
+    }
+    z->are_slots_told = true;
+    *control = (struct lm_control){.kind = LM_CONTROL_SLOTS, .slots = state_of(&z->slots)};
+    return 1;
+}
+
+void zcu102_tell_slots(struct zcu102 *z)
+{
+    z->controls = (struct lm_controls){.ctx = z, .next = next_control};
+    z->are_slots_told = !has_slots(z);
 }

@@ -10,7 +10,8 @@ enum { ZCU102_FLASH_POLLS = 1000000 /* after which a read at the start is given 
  * call. */
 void zcu102_choose_slot(struct zcu102 *z, void *scratch, uint32_t scratch_bytes);
 
-/* Hand the same to the unit's BIT page. After lm_unit_init. */
-void zcu102_show_slots(struct zcu102 *z);
+/* Make z->controls: the first control says the same to the unit's BIT page, and all that follow are
+ * the bezel's. So a recording has it. */
+void zcu102_tell_slots(struct zcu102 *z);
 
 #endif

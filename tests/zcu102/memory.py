@@ -36,12 +36,13 @@ def behind_pointer(graph, caller):
         return {name for name in graph.stack_bytes if plain(name) == "get_byte"}
     if caller.startswith(("drivers/", "drv_")):
         return {"zcu102_now_us"}
-    # A slot of the flash stands before the flash itself.
-    if caller.startswith("firmware/map/slot_flash"):
+    # A slot of the flash stands before the flash itself, and what is known of the slots before the bezel.
+    if caller.startswith(("firmware/map/slot_flash", "bsp/zcu102/slots")):
         return {name for name in graph.stack_bytes if plain(name) in PORTS and name.startswith("drivers/")}
     ports = {name for name in graph.stack_bytes if plain(name) in PORTS}
     if caller.startswith(("bsp/record/", "record_")):
-        return {name for name in ports if name.startswith("drivers/")} | {"bsp/zcu102/recording.c:put_line"}
+        before = ("drivers/", "firmware/map/slot_flash", "bsp/zcu102/slots")
+        return {name for name in ports if name.startswith(before)} | {"bsp/zcu102/recording.c:put_line"}
     return {name for name in ports if name.startswith("drivers/")} if caller.startswith("tests/") else ports
 
 
