@@ -83,7 +83,7 @@ def start(chips, folder):
         path.write_bytes(content)
     with tempfile.TemporaryDirectory() as scratch, socket.socket(socket.AF_UNIX) as line, \
             machine.Machine(machine.BUILD / "landmass.elf", folder, paths, options=("-no-reboot",),
-                            uart1=f"{scratch}/uart1") as m:
+                            uart1=f"unix:{scratch}/uart1,server=on,wait=off") as m:
         m.run(until=("flying", "no usable"))
         line.connect(f"{scratch}/uart1")
         line.sendall(sentence("D12") + sentence("U12"))
