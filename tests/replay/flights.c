@@ -10,11 +10,13 @@
  *
  * The bus has gaps, jumps, storms and an outage; reads of the flash are late or fail, also at the
  * start; steps come when they come; the display is busy, fails, and has buffers of any age; keys,
- * knobs and commands come at any time. */
+ * knobs and commands come at any time. A partner asks for a swap of the pages and answers one, and
+ * frames of it are lost; some flights begin with the settings that another left, or with noise. */
 #include "bus_frames.h"
 #include "fx/crc32c.h"
 #include "hs/rng.h"
 #include "lm/canas.h"
+#include "lm/swap.h"
 #include "memory_flash.h"
 #include "record.h"
 #include "replay.h"
@@ -26,6 +28,7 @@
 #include <string.h>
 
 enum { LOST_STEP = 1500 };
+enum { NODE = 20, PARTNER = 21, SAYINGS = 64 };
 enum { FLIGHT_S = 6, SIDE_PX = 288, TILES = 130, POLLS = 60, BUFFERS = LM_AGES + 1 };
 
 struct flight {
@@ -47,6 +50,13 @@ struct flight {
         uint8_t code;
         double jump_deg, heading_deg;
     } bus;
+    struct { /* the partner: it knows the settings that the unit told last */
+        struct lm_can_frame saying[SAYINGS];
+        uint32_t head, tail;
+        uint8_t known[LM_SETTINGS_BYTES];
+        uint16_t missing;
+        uint8_t code;
+    } partner;
     uint32_t pictures, ages, held_button;
     bool is_display_busy, is_voice_busy;
     FILE *log, *sums;
@@ -133,11 +143,71 @@ static struct lm_can_frame other_frame(struct flight *f)
     return frame;
 }
 
+/* ---- the partner ---- */
+
+static void say(struct flight *f, uint32_t service, uint8_t code, const uint8_t data[4])
+{
+    if (f->partner.head - f->partner.tail < SAYINGS && !happens(f, 100)) {
+        f->partner.saying[f->partner.head++ % SAYINGS] =
+            (struct lm_can_frame){.id = LM_SWAP_ID,
+                                  .length = 8,
+                                  .data = {PARTNER, LM_CANAS_UCHAR4, (uint8_t)service, code,
+                                           data[0], data[1], data[2], data[3]}};
+    }
+}
+
+static void say_act(struct flight *f, uint32_t act, uint8_t code)
+{
+    say(f, act, code, (const uint8_t[4]){NODE});
+}
+
+static void say_settings(struct flight *f, uint32_t first_part, uint8_t code)
+{
+    for (uint32_t part = 0; part < LM_SWAP_PARTS; part++) {
+        say(f, first_part + part, code, f->partner.known + 4 * part);
+    }
+}
+
+/* What the unit says to it. */
+static void partner_hears(struct flight *f, const struct lm_can_frame *frame)
+{
+    const uint8_t service = frame->data[2], code = frame->data[3];
+    if (frame->id != LM_SWAP_ID || f->board.bus_partner == 0) {
+        return;
+    }
+    if (service < LM_SWAP_ASK) {
+        memcpy(f->partner.known + (size_t)4 * (service % LM_SWAP_PARTS), frame->data + 4, 4);
+        f->partner.missing &= (uint16_t) ~(1u << service % LM_SWAP_PARTS);
+    } else if (service == LM_SWAP_ASK) {
+        say_settings(f, LM_SWAP_OF_ANSWER, code);
+        say_act(f, LM_SWAP_ANSWER, code);
+    } else if (service == LM_SWAP_ANSWER) {
+        say_act(f, LM_SWAP_TAKE, code);
+    } else if (service == LM_SWAP_TAKE) {
+        say_act(f, LM_SWAP_TAKEN, code);
+    }
+}
+
+/* It asks with settings that are sound: those that it knows. */
+static void partner_asks(struct flight *f)
+{
+    if (f->board.bus_partner != 0 && f->partner.missing == 0 &&
+        f->partner.head == f->partner.tail) {
+        say_settings(f, 0, ++f->partner.code);
+        say_act(f, LM_SWAP_ASK, f->partner.code);
+    }
+}
+
 static int receive(void *ctx, struct lm_can_frame *frame)
 {
     struct flight *f = ctx;
     if (f->now_us < f->bus.down_until_us) {
         return LM_ERR_IO;
+    }
+    if (f->partner.tail != f->partner.head) {
+        *frame = f->partner.saying[f->partner.tail++ % SAYINGS];
+        frame->time_us = f->now_us;
+        return 1;
     }
     if (happens(f, 40)) {
         *frame = other_frame(f);
@@ -174,11 +244,14 @@ static int receive_2(void *ctx, struct lm_can_frame *frame)
 static int send_frame(void *ctx, const struct lm_can_frame *frame)
 {
     struct flight *f = ctx;
-    (void)frame;
     if (happens(f, 10)) {
         f->is_voice_busy = !f->is_voice_busy && happens(f, 3);
     }
-    return f->is_voice_busy ? LM_BUSY : happens(f, 50) ? LM_ERR_IO : LM_OK;
+    const int status = f->is_voice_busy ? LM_BUSY : happens(f, 50) ? LM_ERR_IO : LM_OK;
+    if (status == LM_OK) {
+        partner_hears(f, frame);
+    }
+    return status;
 }
 
 static struct lm_position place(struct flight *f)
@@ -322,6 +395,9 @@ static void upset_bus(struct flight *f)
         f->bus.jump_deg += 0.05;
     }
     f->bus.heading_deg += happens(f, 100) ? 3 : 0;
+    if (happens(f, 600)) {
+        partner_asks(f);
+    }
 }
 
 static uint64_t pause_us(struct flight *f)
@@ -345,7 +421,7 @@ static void open_board(struct flight *f, const uint8_t *image, size_t size)
     f->board = (struct lm_board){.radar = &lm_radar_default,
                                  .flash = &f->port,
                                  .can = &f->can,
-                                 .bus_node = 20,
+                                 .bus_node = NODE,
                                  .tells_reports = true,
                                  .obeys_controls = true,
                                  .controls = &f->controls,
@@ -366,8 +442,27 @@ static void choose_buses(struct flight *f, uint64_t seed)
         f->board.tables[0] = (struct lm_board_table){&lm_bus_xcsoar, 1};
     }
     if (seed % 4 == 0) {
-        static const uint8_t nodes[LM_BUS_NODE_BYTES] = {0, 1 << 1}; /* node 9 */
+        static const uint8_t nodes[LM_BUS_NODE_BYTES] = {0, 1 << 1, 1 << PARTNER % 8}; /* and 9 */
         f->board.bus_nodes = nodes;
+    }
+}
+
+/* Flights with a partner, and those that begin as another ended, or with noise in its place.
+ * Replays know it from the recording alone. */
+static void choose_starts(struct flight *f, uint64_t seed, struct lm_settings *kept)
+{
+    f->partner.missing = 0xffff;
+    if (seed % 5 < 3) {
+        f->board.bus_partner = PARTNER;
+    }
+    if (seed % 7 == 3) {
+        for (size_t i = 0; i < sizeof *kept; i++) {
+            ((uint8_t *)kept)[i] = (uint8_t)hs_rng_below(&f->rng, 256);
+        }
+    }
+    if (seed % 2 == 0 || seed % 7 == 3) {
+        f->board.settings = kept;
+        f->board.restart = "HUNG STEP";
     }
 }
 
@@ -384,14 +479,18 @@ static FILE *open_file(const char *folder, uint64_t seed, const char *kind, cons
     return fopen(path, mode);
 }
 
+static uint32_t swaps; /* of all flights recorded */
+
 /* The head names the flash before it begins to fail. */
 static bool record_flight(struct flight *f, const char *folder, uint64_t seed)
 {
     static struct recorder recorder;
+    static struct lm_settings kept; /* of the flight before */
     const struct record_sink sink = {f, put_line};
     hs_rng_seed(&f->rng, seed);
     f->board.noise_seed = (uint32_t)seed;
     choose_buses(f, seed);
+    choose_starts(f, seed, &kept);
     f->log = open_file(folder, seed, "log", "w");
     f->sums = open_file(folder, seed, "sums", "w");
     if (!f->log || !f->sums) {
@@ -408,6 +507,8 @@ static bool record_flight(struct flight *f, const char *folder, uint64_t seed)
         lm_unit_step(&f->unit, f->now_us);
     }
     record_end(&recorder);
+    lm_settings_give(&f->unit, &kept);
+    swaps += f->unit.count.swaps;
     is_whole = fclose(f->log) == 0 && fclose(f->sums) == 0 && is_whole;
     return is_whole;
 }
@@ -520,6 +621,9 @@ int main(int argc, char **argv)
         free(f);
     }
     free(image);
+    if (swaps > 0) {
+        printf("# %" PRIu32 " pages swapped\n", swaps);
+    }
     printf("%s: %" PRIu64 " of %" PRIu64 " flights\n", argv[1], good, count);
     return good == count ? 0 : 1;
 }

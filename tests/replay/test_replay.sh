@@ -31,7 +31,12 @@ image=$folder/image.lmdb
 "$programs/flights" image "$image" || exit 1
 
 mkdir "$folder/gcc"
-case_is "$flights flights of random events are recorded" "$programs/flights" record "$image" "$folder/gcc" 1 "$flights"
+record() {
+    "$programs/flights" record "$image" "$folder/gcc" 1 "$flights" >"$folder/recorded" && cat "$folder/recorded"
+}
+case_is "$flights flights of random events are recorded" record
+case_is 'pages were swapped with a partner' grep -q '^# [1-9][0-9]* pages swapped' "$folder/recorded"
+case_is 'and flights began with the settings of others' grep -q 'unit 1F4C4D12#' "$folder/gcc/2.log"
 echo "# $(cat "$folder/gcc"/*.sums | wc -l) pictures in $(du -sk "$folder/gcc" | cut -f1) KiB"
 case_is 'the same build shows them again, every picture' "$programs/flights" replay "$image" "$folder/gcc" 1 "$flights"
 case_is 'a step that is lost is seen in every one of them' "$programs/flights" lose "$image" "$folder/gcc" 1 "$flights"
