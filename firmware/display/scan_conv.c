@@ -457,6 +457,7 @@ static inline void set_greys(const struct lm_patch_painter *p, uint32_t first, c
         to[1] = b;
         to[2] = c;
         to[3] = d;
+        __asm__("" : "+r"(to), "+r"(cell)); /* else all turns are written out: 1 kB */
     }
     for (uint32_t i = 0; i < ROWS_AT_ONCE; i++) {
         s->grey[i] = grey_between(s->grey[i] & 255, s->grey[i] >> 8, p->part_q7[first + i]);

@@ -164,16 +164,20 @@ _Static_assert(GROUPS <= 1 << GROUPS_LOG2, "a key holds the number of a group");
  */
 static void search_groups(struct search *of)
 {
-    int32_t key[GROUPS];
+    int32_t key[GROUPS + LM_LANES];
     const uint32_t groups = (of->cells + LM_K_HIGHEST_CELLS - 1) / LM_K_HIGHEST_CELLS;
+    const uint32_t room = (groups + LM_LANES - 1) / LM_LANES * LM_LANES; /* no vector has a rest */
     lm_k_highest(of->level_db_q8, key, of->cells);
-    for (uint32_t n = 0; n < groups; n++) {
+    for (uint32_t n = groups; n < room; n++) {
+        key[n] = -KEY_MAX_DB_Q8;
+    }
+    for (uint32_t n = 0; n < room; n++) {
         const int32_t highest_db_q8 = fx_clamp_i32(key[n], -KEY_MAX_DB_Q8, KEY_MAX_DB_Q8 - 1);
         key[n] = highest_db_q8 * (1 << GROUPS_LOG2) + (int32_t)((1u << GROUPS_LOG2) - 1 - n);
     }
     for (uint32_t turn = 0; turn < groups; turn++) {
         int32_t most = INT32_MIN;
-        for (uint32_t n = 0; n < groups; n++) {
+        for (uint32_t n = 0; n < room; n++) {
             most = fx_max_i32(most, key[n]);
         }
         if (most >> GROUPS_LOG2 < of->least_db_q8) {
