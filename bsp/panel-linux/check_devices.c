@@ -256,6 +256,10 @@ static int check_written(const struct config *c)
         parent_of(c->settings, folder, sizeof folder);
         wrong += !check_folder("settings", folder);
     }
+    if (c->faults[0] != '\0') {
+        parent_of(c->faults, folder, sizeof folder);
+        wrong += !check_folder("faults", folder);
+    }
     if (c->database_serial[0] != '\0') {
         parent_of(c->database_serial, folder, sizeof folder);
         wrong += !check_folder("database.serial", folder);

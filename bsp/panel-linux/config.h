@@ -62,6 +62,7 @@ struct config {
     uint32_t can_heading; /* 1: magnetic */
     uint32_t can_reports; /* 1: on */
     char settings[128];
+    char faults[CONFIG_PATH];
     uint32_t can_controls; /* 1: obey */
     uint32_t seed;
     uint32_t tiles;

@@ -90,6 +90,9 @@ const struct config_row config_table[] = {
     OPTION(CONFIG_PATH_TO, settings, 0, ROOM(settings), "none", "settings", "PATH | none", "none",
            "The settings outlive a restart in this file, such as "
            "/var/lib/landmass-panel/settings; the glass then says RESTART for ten seconds."),
+    OPTION(CONFIG_PATH_TO, faults, 0, ROOM(faults), "none", "faults", "PATH | none",
+           "/var/lib/landmass-panel/faults",
+           "The last 32 faults, a line each, in a file that outlives a power cut."),
     OPTION(CONFIG_NUMBER, seed, 0, 2147483647, NULL, "seed", "0..2147483647", "0",
            "Another number gives another speckle, and nothing else."),
     OPTION(CONFIG_NUMBER, tiles, 120, 512, NULL, "tiles", "120..512", "384",

@@ -29,7 +29,7 @@ struct config_row {
     const char *words; /* CHOICE: its words; TEXT, PATH_TO, SIZE: the word for an empty one */
 };
 
-enum { CONFIG_ROWS = 118 };
+enum { CONFIG_ROWS = 119 };
 extern const struct config_row config_table[CONFIG_ROWS];
 
 #endif

@@ -163,6 +163,7 @@ void panel_step(struct panel *p, uint64_t now_us)
     recording_step(&p->recording, now_us);
     lm_unit_step(p->unit, now_us);
     settings_file_keep(&p->settings, p->unit, now_us);
+    faults_file_keep(&p->faults, &p->unit->faults, now_us);
     p->count.steps++;
     show_lamps(p);
     report_flags(p, now_us);

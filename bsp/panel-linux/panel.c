@@ -263,6 +263,7 @@ int panel_open(struct panel *p, const struct config *config)
     if (status == 0) {
         recording_start(&p->recording, p->board.restart);
         settings_file_start(&p->settings);
+        faults_file_start(&p->faults, config->faults);
     }
     if (status != 0) {
         panel_close(p);
@@ -275,6 +276,7 @@ void panel_close(struct panel *p)
     drv_watchdog_notify(&p->watchdog, "STOPPING=1");
     recording_close(&p->recording);
     settings_file_close(&p->settings);
+    faults_file_close(&p->faults);
     hand_close(&p->hand);
     bezel_close(&p->bezel);
     glass_close(&p->glass);

@@ -11,6 +11,7 @@
 #include "display.h"
 #include "drv/flash_reader.h"
 #include "drv/watchdog.h"
+#include "faults_file.h"
 #include "hand_controller.h"
 #include "lm/unit.h"
 #include "recording.h"
@@ -42,6 +43,7 @@ struct panel {
     struct lm_board board;
     struct recording recording;
     struct settings_file settings;
+    struct faults_file faults;
     struct lm_unit *unit;     /* owned */
     uint32_t flags_told;      /* enum lm_flag, as reported last */
     const char *trouble_told; /* of the recording, likewise */

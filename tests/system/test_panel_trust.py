@@ -56,7 +56,7 @@ def make():
 def write_config(image, **options):
     here = os.getcwd()
     with open("panel.conf", "w") as file:
-        file.write("database = %s/%s\ncan = none\nglass = none\nstick = none\nrecord = none\nrealtime.priority = 0\n"
+        file.write("database = %s/%s\ncan = none\nglass = none\nstick = none\nrecord = none\nfaults = none\nrealtime.priority = 0\n"
                    "realtime.memory = free\n" % (here, image))
         for name, value in {"serial": here + "/serial", **options}.items():
             file.write("database.%s = %s\n" % (name, here + "/" + value if name == "key" else value))

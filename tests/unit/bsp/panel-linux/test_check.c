@@ -121,7 +121,7 @@ static struct config nothing(void)
     struct config c;
     config_defaults(&c);
     c.glass = CONFIG_GLASS_NONE;
-    c.can[0] = c.record[0] = c.settings[0] = c.database_serial[0] = '\0';
+    c.can[0] = c.record[0] = c.settings[0] = c.faults[0] = c.database_serial[0] = '\0';
     return c;
 }
 

@@ -62,7 +62,7 @@ static struct config nothing_fitted(void)
     struct config c;
     config_defaults(&c);
     c.can[0] = '\0';
-    c.record[0] = '\0';
+    c.record[0] = c.faults[0] = '\0';
     c.glass = CONFIG_GLASS_NONE;
     c.stick.choice = CONFIG_STICK_NONE;
     c.priority = 0;
