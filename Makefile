@@ -29,7 +29,7 @@ $(call archive, $(LIB_support), $(wildcard tests/support/*.c))
 make_board = env $(patsubst %,-u %,MAKEFLAGS MAKEOVERRIDES CC OPT OPT_core LDFLAGS) $(MAKE) --no-print-directory -j2 BOARD=$(1)
 
 .PHONY: help deps all run check check-clang check-panel panel package bench gallery fuzz rooms lint format clean
-.PHONY: cuts reproduce web zcu102 run-zcu102 size bench-zcu102 coverage figures prove
+.PHONY: cuts deps-world reproduce web world zcu102 run-zcu102 size bench-zcu102 coverage figures prove
 
 help: ## Print this menu
 	@echo 'landmass: make TARGET'
@@ -37,6 +37,13 @@ help: ## Print this menu
 
 deps: ## Install the Debian packages of bsp/bench-linux/packages.txt (as root or through sudo)
 	@sh bsp/bench-linux/deps.sh
+
+deps-world: ## Install what make world and its tests need besides: host-sim/world/packages.txt
+	@sh bsp/bench-linux/deps.sh host-sim/world/packages.txt
+
+world: deps deps-world ## Make a world in shards on this machine: WORLD_OPTIONS, or the built-in generator; pictures in build/world
+	@$(MAKE) --no-print-directory $(PROGRAMS)
+	@sh host-sim/world/world.sh $(O)
 
 all: $(PROGRAMS) ## Build every program, without running anything
 

@@ -1,7 +1,7 @@
 #!/bin/sh
-# Install what packages.txt lists and this machine lacks. Needs root, or sudo.
+# Install what a list, packages.txt unless it is named, has and this machine lacks. Needs root, or sudo. Usage: deps.sh [LIST]
 set -eu
-list=$(sed 's/#.*//' "$(dirname "$0")/packages.txt")
+list=$(sed "s/#.*//" "${1:-$(dirname "$0")/packages.txt}")
 missing=
 for package in $list; do
     case $package in

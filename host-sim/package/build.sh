@@ -36,6 +36,8 @@ done
 mkdir -p "$root/usr/share/landmass"
 install -m 644 "$top"/host-sim/programs/db/classes/* "$top"/host-sim/programs/radar/tables/* \
     "$top"/host-sim/nav/share/* "$root/usr/share/landmass"
+cp -r "$here/../world" "$root/usr/share/landmass/world"
+rm "$root/usr/share/landmass/world/world.sh" "$root/usr/share/landmass/world/packages.txt"
 cp -r "$bin/../ios" "$root/usr/share/landmass/ios"
 rm "$root/usr/share/landmass/ios/.made"
 mkdir -p "$doc/docs"

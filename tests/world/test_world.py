@@ -1,0 +1,169 @@
+#!/usr/bin/env python3
+"""The workflow of a world, on the cores of this machine and on two nodes of Slurm: the bytes of a build in one go after a
+killed engine, a killed node, a killed head and a full disk, or a plain refusal that names the shard.
+
+TAP on standard output. BUILD names the build's folder.
+"""
+
+import hashlib
+import os
+import shutil
+import signal
+import subprocess
+import sys
+import tempfile
+import time
+
+import cluster
+
+BUILD = os.path.abspath(os.environ.get("BUILD", "build/bench-linux"))
+TOP = os.path.abspath(".")
+WORLD = TOP + "/host-sim/world"
+CLASSES = TOP + "/host-sim/programs/db/classes/heaton6.classes"
+OPTIONS = "--classes %s --class-raster scene/truth.tif --terrain scene/terrain.tif --heights scene/heights.tif --detail " \
+          "scene/detail.txt --seed 3" % CLASSES
+CHECKS = []
+
+
+def check(name, is_true, why=""):
+    CHECKS.append(is_true)
+    print(("ok " if is_true else "not ok ") + "%d - %s" % (len(CHECKS), name), flush=True)
+    if not is_true and why:
+        print("# " + why.strip()[-3000:].replace("\n", "\n# "), flush=True)
+
+
+def skip(name, why):
+    CHECKS.append(True)
+    print("ok %d - %s # SKIP\n# skipped: %s" % (len(CHECKS), name, why), flush=True)
+
+
+def start(*words, db=None, environment=None):
+    """The workflow; its messages go to engine.log."""
+    command = ["snakemake", "-s", WORLD + "/Snakefile", "--nolock", "--rerun-triggers", "mtime", "--rerun-incomplete", *words,
+               "--config", "db=" + (db or BUILD + "/bin/landmass-db"), "options=" + OPTIONS, "out=world.lmdb", "work=work", "shards=6"]
+    return subprocess.Popen(command, stdin=subprocess.DEVNULL, stdout=open("engine.log", "w"), stderr=subprocess.STDOUT,
+                            env=environment, start_new_session=True)
+
+
+def log():
+    return open("engine.log", errors="replace").read()
+
+
+def digest(path):
+    return hashlib.sha256(open(path, "rb").read()).hexdigest() if os.path.exists(path) else None
+
+
+def clean():
+    for name in ("work", ".snakemake"):
+        shutil.rmtree(name, ignore_errors=True)
+    if os.path.exists("world.lmdb"):
+        os.unlink("world.lmdb")
+
+
+def parts():
+    return {name: os.stat("work/parts/" + name).st_mtime_ns for name in os.listdir("work/parts") if name.endswith(".part")} \
+        if os.path.isdir("work/parts") else {}
+
+
+def wait_for_parts(process, count, seconds=120):
+    end = time.time() + seconds
+    while len(parts()) < count and process.poll() is None and time.time() < end:
+        time.sleep(0.05)
+    return len(parts()) >= count and process.poll() is None
+
+
+def other_db(path, before_a_shard):
+    """A landmass-db that does something before it makes a shard: waits, so that it can be killed, or goes without memory."""
+    with open(path, "w") as file:
+        file.write('#!/bin/sh\n[ "$1" != build ] || { %s; }\nexec %s/bin/landmass-db "$@"\n' % (before_a_shard, BUILD))
+    os.chmod(path, 0o755)
+    return os.path.abspath(path)
+
+
+def on_this_machine(whole):
+    engine = start("-j2")
+    was_killed = wait_for_parts(engine, 2)
+    os.killpg(engine.pid, signal.SIGKILL)
+    engine.wait()
+    before = parts()
+    done = start("-j2").wait()
+    kept = [name for name, when in before.items() if parts().get(name) == when]
+    check("an engine that is killed in the middle goes on where it was", was_killed and done == 0 and len(kept) == len(before) > 0,
+          log())
+    check("the image is the bytes of a build in one go", digest("world.lmdb") == whole)
+    report = open("work/report.txt").read() if os.path.exists("work/report.txt") else ""
+    check("a report tells each shard", "6 shards" in report and len(report.splitlines()) == 9, report)
+    check("and pictures are there", len(os.listdir("work/pictures")) == 4)
+    done = start("-j2").wait()
+    check("run again, it has nothing to do", done == 0 and "Nothing to be done" in log(), log())
+    damaged = sorted(parts())[3]
+    with open("work/parts/" + damaged, "r+b") as file:
+        file.seek(9000)
+        byte = file.read(1)
+        file.seek(9000)
+        file.write(bytes((byte[0] ^ 1,)))
+    os.unlink("world.lmdb")
+    done = start("-j1").wait()
+    check("a damaged part is refused by its name, and no image is there",
+          done != 0 and damaged in log() and "is damaged" in log() and not os.path.exists("world.lmdb"), log())
+    os.unlink("work/parts/" + damaged)
+    done = start("-j1").wait()
+    check("without it the shard is made again, and the image is right", done == 0 and digest("world.lmdb") == whole, log())
+    clean()
+    done = start("-j1", db=other_db("full", "trap '' XFSZ; ulimit -f 300")).wait()
+    check("a full disk is a plain refusal that names the shard", done != 0 and "shard" in log() and "could not be made" in log()
+          and not os.path.exists("world.lmdb"), log())
+    done = start("-j2").wait()
+    check("with room again it goes on, and the image is right", done == 0 and digest("world.lmdb") == whole, log())
+    clean()
+    done = start("-j1", db=other_db("hungry", "export OPENBLAS_NUM_THREADS=1; ulimit -v 285000")).wait()
+    check("a shard that runs out of memory is refused by its number", done != 0 and "out of memory" in log()
+          and "could not be made" in log() and not parts(), log())
+
+
+def on_slurm(whole):
+    nodes = cluster.Cluster(os.path.abspath("cluster"), 2)
+    try:
+        clean()
+        slow = other_db("slow", "sleep 3")
+        engine = start("--profile", WORLD + "/slurm", db=slow, environment=nodes.environment)
+        is_busy = wait_for_parts(engine, 1)
+        nodes.kill_node("n2")
+        time.sleep(1)
+        nodes.kill("head")
+        time.sleep(1)
+        nodes.head()
+        done = engine.wait(300)
+        check("a node that dies and a head that is restarted cost nothing but time: the image is right",
+              is_busy and done == 0 and digest("world.lmdb") == whole, log())
+        tries = [open("work/tries/" + name).read().split() for name in os.listdir("work/tries")]
+        check("both nodes had shards, and that of the dead one was done again on the other",
+              {"n1", "n2"} <= {node for names in tries for node in names} and any(names[-2:] == ["n2", "n1"] for names in tries),
+              str(tries))
+        check("the report says so", ", 0 of them tried again" not in open("work/report.txt").read(), open("work/report.txt").read())
+        print("# " + open("work/report.txt").read().strip().replace("\n", "\n# "))
+    finally:
+        nodes.end()
+
+
+def main():
+    with tempfile.TemporaryDirectory(ignore_cleanup_errors=True) as work:
+        os.chdir(work)
+        if not shutil.which("snakemake"):
+            skip("the workflow of a world", "snakemake missing; make deps-world installs it")
+        else:
+            subprocess.run([BUILD + "/bin/landmass-scene", "--out", "scene", "--size", "256"], check=True, capture_output=True)
+            subprocess.run([BUILD + "/bin/landmass-db", "build", *OPTIONS.split(), "--out", "whole.lmdb"], check=True, capture_output=True)
+            whole = digest("whole.lmdb")
+            on_this_machine(whole)
+            missing = cluster.why_not()
+            if missing:
+                skip("two nodes of Slurm", missing)
+            else:
+                on_slurm(whole)
+        os.chdir("/")
+    print("1..%d" % len(CHECKS))
+    sys.exit(0 if all(CHECKS) else 1)
+
+
+main()
