@@ -1,12 +1,25 @@
 /* The head of a recording: what must be the same when it is shown again. Needs no C library. */
 #include "record.h"
 
+#include <stddef.h>
+
 #include "fx/crc32c.h"
 #include "fx/mem.h"
+#include "fx/sat.h"
+#include "lm/image.h"
 #include "lm/radar_record.h"
 #include "lm/version.h"
 
 enum { HEAD_BYTES = 4096 };
+
+/* Without the header's own checksum: bytes that end in theirs leave the same remainder, whatever
+ * they are. */
+static uint32_t crc_of_head(const uint8_t *bytes, uint32_t length)
+{
+    const uint32_t before = fx_min_u32(length, offsetof(struct lm_image_header, crc));
+    const uint32_t after = fx_min_u32(length, LM_DB_HEADER_BYTES);
+    return fx_crc32c(fx_crc32c(0, bytes, before), bytes + after, length - after);
+}
 
 static uint32_t crc_of_flash(const struct lm_flash *flash, uint32_t polls)
 {
@@ -19,7 +32,7 @@ static uint32_t crc_of_flash(const struct lm_flash *flash, uint32_t polls)
     for (uint32_t i = 0; i < polls; i++) {
         const int status = flash->read_poll(flash->ctx);
         if (status != LM_BUSY) {
-            return status == LM_OK ? fx_crc32c(0, bytes, length) : 0;
+            return status == LM_OK ? crc_of_head(bytes, length) : 0;
         }
     }
     return 0;

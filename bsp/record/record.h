@@ -83,7 +83,7 @@ struct record_head {
     char version[16];     /* of the firmware */
     uint64_t zero_us;     /* time of the log at which the unit's clock is 0 */
     uint64_t image_bytes; /* of the flash */
-    uint32_t image_crc;   /* CRC-32C of its first 4 KiB, which hold the checksums of the rest */
+    uint32_t image_crc;   /* CRC-32C of its first 4 KiB without the header's own checksum */
     uint32_t profile_crc; /* of the bus's table, every number of it */
     uint32_t radar_crc;   /* of the board's radar table; 0: the image's or the built-in one */
     char profile[32];     /* name of the bus's table, as one word */
