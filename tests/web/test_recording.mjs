@@ -168,7 +168,7 @@ test('an image that cannot be read ends the replay with a word', async () => {
 });
 
 test('any bytes are safe: a line that is none is named, a torn end is left out', async () => {
-    const text = textOf(4).slice(0, 200000), replay = await Replay.load(moduleBytes, image);
+    const all = textOf(4), text = all.slice(0, Math.min(200000, all.length * 3 / 4)), replay = await Replay.load(moduleBytes, image);
     const end = (changed) => {
         try {
             replay.open(linesOf(changed));

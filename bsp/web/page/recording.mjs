@@ -416,8 +416,8 @@ export class Moments {
     }
 
     count() {
-        const pages = new Set(this.bases);
-        this.all.forEach((moment) => moment.pages.forEach((page) => pages.add(page).add(page?.base)));
+        const pages = new Set(this.bases), held = [...this.all.map((moment) => moment.pages), this.pages];
+        held.forEach((all) => all.forEach((page) => pages.add(page).add(page?.base)));
         this.bytes = [...pages].reduce((sum, page) => sum + (page?.size ?? 0), this.mirror.byteLength);
     }
 
