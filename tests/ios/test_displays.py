@@ -46,11 +46,12 @@ class Instructor(browser.Browser):
         self.until("globalThis.station?.isOpen && station.world.ownAircraft()")
         return self
 
-    def act(self, words, at_ms=0):
-        """Do something; `at_ms`: when, by the machine's clock."""
+    def act(self, words, at_ms=None):
+        """Do something, at once or at `at_ms` of the machine's clock. A page that is hidden may wait a minute for a timer."""
+        wait = f"await new Promise((go) => setTimeout(go, {at_ms} - Date.now())); " if at_ms else ""
         said = self.driver.execute_async_script(
             "const done = arguments[0], c = station.commands; (async () => {"
-            f"const T = await import('./targets.mjs'); await new Promise((go) => setTimeout(go, {at_ms} - Date.now())); {words}"
+            f"const T = await import('./targets.mjs'); {wait}{words}"
             "})().then(() => done(''), (error) => done(String(error)))")
         assert said == "", said
 
@@ -106,7 +107,7 @@ def watch(b, name):
     return dict(b.ask("[...sums]"))
 
 
-def the_page_changes_between_displays_and_has_the_pictures_of_each(left, _right, panels):
+def the_page_changes_between_displays_and_has_the_pictures_of_each(left, right, panels):
     here = left.driver.current_window_handle
     left.find("tab-displays").click()
     left.until("document.querySelectorAll('#display-list a').length === 2")
@@ -124,9 +125,7 @@ def the_page_changes_between_displays_and_has_the_pictures_of_each(left, _right,
         sizes[name] = left.ask("['width', 'height'].map((side) => document.getElementById('glass')[side])")
         if name == "right":  # a command that only the left one obeys
             assert len({of["sum"] for of in shown.values()}) > FRAMES // 3
-            left.driver.switch_to.window(here)
-            left.act("const {controlFrames: C} = await import('./frames.mjs'); c.control(C.patch(46.05, 11.15, 5))")
-            left.driver.switch_to.window(repeater)
+            right.act("const {controlFrames: C} = await import('./frames.mjs'); c.control(C.patch(46.05, 11.15, 5))")
     left.until("document.getElementById('words').textContent.startsWith('SAR')")
     assert sizes == {"left": [512, 512], "right": [640, 480]}, sizes
     print(f"# {compared} pictures compared")
