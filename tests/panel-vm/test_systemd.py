@@ -147,6 +147,7 @@ def checked_alone(m):
     code, said = m.sh(CHECK + " 2>&1")
     m.do("ip link set vcan0 up; chown landmass-panel /var/lib/landmass-panel/recordings; chmod 660 /dev/gpiochip0; "
          "echo detect >/sys/class/drm/card0-Virtual-1/status")
+    fly(m)  # a sender ends where its interface goes down
     m.do("systemctl start landmass-panel")
     expect(code == 3, code, said)
     for words in ("can: vcan0: is down; ip link set", "record: /var/lib/landmass-panel/recordings: Permission denied",
