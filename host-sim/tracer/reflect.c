@@ -176,6 +176,7 @@ struct reflect_field reflect_field_of(const struct reflect_law *law, const struc
     if (law->kind == REFLECT_FRESNEL_HH || law->kind == REFLECT_FRESNEL_VV) {
         return (struct reflect_field){coefficient, diffuse};
     }
+    const double rough = fmin(rough_share(law, m, t), 1);
     return (struct reflect_field){coefficient * sqrt(smooth_share(m, law->wavelength_m, t1)),
-                                  fmin(rough_share(law, m, t), 1)};
+                                  rough};
 }
