@@ -7,6 +7,7 @@
 #include <libgen.h>
 #include <limits.h>
 #include <stdio.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 int hs_sync_folder(const char *path)
@@ -22,6 +23,18 @@ int hs_sync_folder(const char *path)
     const int cause = fsync(fd) == 0 || errno == EINVAL ? 0 : errno;
     close(fd);
     return cause;
+}
+
+void hs_give_to_owner(int fd, const char *path, mode_t mode)
+{
+    struct stat folder;
+    char copy[PATH_MAX];
+    snprintf(copy, sizeof copy, "%s", path);
+    (void)fchmod(fd, mode);
+    if (geteuid() == 0 && stat(dirname(copy), &folder) == 0 &&
+        fchown(fd, folder.st_uid, folder.st_gid) != 0) {
+        return; /* a file system without owners */
+    }
 }
 
 static int write_new(const char *path, const void *bytes, size_t length, mode_t mode)

@@ -5,7 +5,6 @@
 
 #include <errno.h>
 #include <fcntl.h>
-#include <libgen.h>
 #include <limits.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -104,18 +103,6 @@ static void close_all(void *ctx)
     free(f);
 }
 
-/* A file that root makes belongs to the owner of its folder, the panel's user. */
-static void give_to_owner(int fd, const char *path)
-{
-    struct stat folder;
-    char copy[PATH_MAX];
-    snprintf(copy, sizeof copy, "%s", path);
-    if (geteuid() == 0 && stat(dirname(copy), &folder) == 0 &&
-        fchown(fd, folder.st_uid, folder.st_gid) != 0) {
-        return; /* a file system without owners */
-    }
-}
-
 /* Devices are often named by links; a link in the place of a file could lead anywhere. */
 static int open_one(const char *path, enum slot_use use, int *fd)
 {
@@ -133,8 +120,7 @@ static int open_one(const char *path, enum slot_use use, int *fd)
         return S_ISDIR(about.st_mode) ? EISDIR : EINVAL;
     }
     if (use == SLOT_TO_WRITE && S_ISREG(about.st_mode)) {
-        (void)fchmod(*fd, FILE_MODE); /* whatever the mask of the process */
-        give_to_owner(*fd, path);
+        hs_give_to_owner(*fd, path, FILE_MODE);
     }
     return 0;
 }

@@ -1,15 +1,15 @@
 #include "slots/progress.h"
 
+#include "hs/durable_file.h"
+#include "hs/real_time.h"
+
 #include <errno.h>
 #include <fcntl.h>
 #include <inttypes.h>
-#include <libgen.h>
-#include <limits.h>
 #include <stdio.h>
 #include <string.h>
 #include <sys/file.h>
 #include <sys/stat.h>
-#include <time.h>
 #include <unistd.h>
 
 enum { LINE_BYTES = 33, FILE_MODE = 0644 };
@@ -21,9 +21,7 @@ static const char *const words[LM_LOADS] = {[LM_LOAD_NONE] = "none",
 
 static uint64_t monotonic_ms(void)
 {
-    struct timespec t;
-    clock_gettime(CLOCK_MONOTONIC, &t);
-    return (uint64_t)t.tv_sec * 1000u + (uint64_t)t.tv_nsec / 1000000u;
+    return (uint64_t)hs_clock_us(CLOCK_MONOTONIC) / 1000u;
 }
 
 /* The line is as long as the one before, so that one write replaces it. */
@@ -34,18 +32,6 @@ static void tell(const struct slot_teller *t, enum lm_load load, int32_t percent
                                 words[load], percent, monotonic_ms());
     if (t->fd >= 0 && length == LINE_BYTES) {
         (void)!pwrite(t->fd, line, LINE_BYTES, 0); /* the load does not depend on it */
-    }
-}
-
-/* The panel's user, whose folder it is, may tell the next load. */
-static void give_to_owner(int fd, const char *path)
-{
-    struct stat folder;
-    char copy[PATH_MAX];
-    snprintf(copy, sizeof copy, "%s", path);
-    (void)fchmod(fd, FILE_MODE); /* whatever the mask of the process */
-    if (geteuid() == 0 && stat(dirname(copy), &folder) == 0) {
-        (void)!fchown(fd, folder.st_uid, folder.st_gid);
     }
 }
 
@@ -63,7 +49,7 @@ void slot_teller_open(struct slot_teller *t, const char *path)
         t->fd = -1;
     }
     if (t->fd >= 0) {
-        give_to_owner(t->fd, path);
+        hs_give_to_owner(t->fd, path, FILE_MODE); /* the panel's user may tell the next load */
         (void)!ftruncate(t->fd, 0);
     }
     slot_teller_run(t, 0);

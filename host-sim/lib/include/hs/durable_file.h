@@ -14,4 +14,8 @@ int hs_replace_file(const char *path, const void *bytes, size_t length, mode_t m
  * do it (EINVAL) is no error: it keeps no names apart from its files. */
 int hs_sync_folder(const char *path);
 
+/* Let others use an open file as they do its folder: it gets `mode`, whatever the mask of the
+ * process, and from root the owner of the folder. What cannot be changed stays. */
+void hs_give_to_owner(int fd, const char *path, mode_t mode);
+
 #endif
