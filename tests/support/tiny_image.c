@@ -41,6 +41,7 @@ struct builder {
     const struct tiny_spec *spec;
     const struct lm_classes *classes;
     struct lm_band bands[LM_DB_BANDS_MAX];
+    uint32_t first_band[LM_DB_LODS_MAX + 1]; /* of each level, and the end of the last */
     uint32_t band_count, entry_count, record_count;
     uint8_t level_count;
     int64_t south, north, west, east; /* of the wanted area, BAM; longitudes may pass 2^32 */
@@ -216,6 +217,7 @@ static int choose_bands(struct builder *b)
             return -1;
         }
         b->level_count = (uint8_t)(level + 1);
+        b->first_band[level + 1] = b->band_count;
         if (asked != 0 ? b->level_count == asked : tiles <= 4) {
             break;
         }
@@ -314,9 +316,9 @@ static struct lm_tile_point *point(struct lm_tile *tile, uint32_t r, uint32_t c)
 /* The tile's directory entry, or -1. */
 static int64_t find_entry(const struct builder *b, uint8_t level, uint32_t row, uint32_t column)
 {
-    for (uint32_t i = 0; i < b->band_count; i++) {
+    for (uint32_t i = b->first_band[level]; i < b->first_band[level + 1]; i++) {
         const struct lm_band *band = &b->bands[i];
-        if (band->lod != level || row - band->row0 >= band->rows) {
+        if (row - band->row0 >= band->rows) {
             continue;
         }
         const uint32_t wide = tile_width_log2(b, level, band->zone);
