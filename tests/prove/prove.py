@@ -11,6 +11,7 @@ checked, and which planted bugs must make it fail:
     plant FUNCTION FILE           an edit of one line of FILE, which FUNCTION must not survive
     - the line as it is
     + the line that replaces it
+    smaller FILE                  an edit as that of `plant`, for every proof of the file: a table of fewer rows
 
 NAME on the command line is a file's, or FILE.FUNCTION without its prove_. One proof runs at a time, with 3 GB and
 PROVE_TIMEOUT seconds of the processor (900). Exit status 0 iff all hold, or, with --plants, all fail.
@@ -45,7 +46,7 @@ class File:
 
     def __init__(self, path):
         self.name, self.path = path.stem, path
-        self.sources, self.options, self.proofs = [], [], {}
+        self.sources, self.options, self.proofs, self.smaller = [], [], {}, []
         lines = path.read_text().splitlines()
         number = 0
         while number < len(lines):
@@ -61,8 +62,10 @@ class File:
                 is_quick = words[2:3] == ["quick"]
                 self.proofs[words[1]] = Proof(self, words[1], words[3 if is_quick else 2:], is_quick)
             elif words[0] == "plant" and len(words) == 3 and words[1] in self.proofs and self.is_edit(lines, number):
-                edit = words[2], lines[number][2:].strip(), lines[number + 1][2:].strip()
-                self.proofs[words[1]].plants.append(edit)
+                self.proofs[words[1]].plants.append(self.edit(words[2], lines, number))
+                number += 2
+            elif words[0] == "smaller" and len(words) == 2 and self.is_edit(lines, number):
+                self.smaller.append(self.edit(words[1], lines, number))
                 number += 2
             else:
                 sys.exit(f"prove: {path}:{number}: not understood: {lines[number - 1]}")
@@ -71,6 +74,10 @@ class File:
     @staticmethod
     def is_edit(lines, number):
         return len(lines) > number + 1 and lines[number].startswith("- ") and lines[number + 1].startswith("+ ")
+
+    @staticmethod
+    def edit(file, lines, number):
+        return file, lines[number][2:].strip(), lines[number + 1][2:].strip()
 
     def check_functions(self):
         there = set(re.findall(r"^void (prove_\w+)\(", (HERE / f"{self.name}.c").read_text(), re.M))
@@ -132,30 +139,36 @@ def report(result, name, is_good, said, is_tap, number):
         print("\n".join("# " + line for line in result.cause().splitlines()), flush=True)
 
 
+def change_line(edit, folder):
+    file, old, new = edit
+    lines = (folder / file).read_text().splitlines()
+    where = [i for i, line in enumerate(lines) if line.strip() == old]
+    if len(where) != 1:
+        sys.exit(f"prove: {file} has this line {len(where)} times, and an edit needs it once: {old}")
+    lines[where[0]] = new
+    (folder / file).write_text("\n".join(lines) + "\n")
+
+
+def result_with(proof, edits, build):
+    """The result in a copy of the sources with some lines changed."""
+    with tempfile.TemporaryDirectory(prefix="prove-") as name:
+        folder = Path(name)
+        for part in ("firmware", "fixed", "drivers", "tests/prove"):
+            shutil.copytree(ROOT / part, folder / part)
+        for edit in edits:
+            change_line(edit, folder)
+        return Result(proof, build, folder)
+
+
 def prove(proof, build, is_tap, number):
-    result = Result(proof, build, ROOT)
+    result = result_with(proof, proof.file.smaller, build) if proof.file.smaller else Result(proof, build, ROOT)
     said = f"{result.checked} properties hold" if result.holds else f"{result.failed} of {result.checked} FAILED"
     report(result, proof.name, result.holds, said, is_tap, number)
     return result.holds
 
 
-def planted_tree(edit, folder):
-    """A copy of the sources with one line changed."""
-    file, old, new = edit
-    for part in ("firmware", "fixed", "drivers", "tests/prove"):
-        shutil.copytree(ROOT / part, folder / part)
-    lines = (folder / file).read_text().splitlines()
-    where = [i for i, line in enumerate(lines) if line.strip() == old]
-    if len(where) != 1:
-        sys.exit(f"prove: {file} has this line {len(where)} times, and a planted bug needs it once: {old}")
-    lines[where[0]] = new
-    (folder / file).write_text("\n".join(lines) + "\n")
-
-
 def plant(proof, edit, build, is_tap, number):
-    with tempfile.TemporaryDirectory(prefix="prove-") as folder:
-        planted_tree(edit, Path(folder))
-        result = Result(proof, build, folder)
+    result = result_with(proof, [*proof.file.smaller, edit], build)
     said = f"{result.failed} fail with" if result.is_refuted else "SURVIVES or no answer:"
     report(result, f"{proof.name}", result.is_refuted, f"{said} {edit[2]}", is_tap, number)
     return result.is_refuted
