@@ -162,6 +162,43 @@ static void count_parts(const struct mesh *m, struct parts *p, struct mesh_audit
     }
 }
 
+static void number_parts(uint32_t *parent, uint32_t count, int32_t *part_of, uint32_t *part_count)
+{
+    *part_count = 0;
+    for (uint32_t i = 0; i < count; i++) {
+        part_of[i] = -1;
+    }
+    for (uint32_t i = 0; i < count; i++) {
+        int32_t *part = &part_of[root_of(parent, i)];
+        *part = *part < 0 ? (int32_t)(*part_count)++ : *part;
+    }
+    for (uint32_t i = 0; i < count; i++) {
+        part_of[i] = part_of[root_of(parent, i)];
+    }
+}
+
+int mesh_parts(const struct mesh *m, int32_t *part_of, uint32_t *part_count)
+{
+    struct mesh_audit audit = {0};
+    uint32_t *weld = welded(m);
+    struct edge *edges = malloc(((size_t)m->triangle_count * 3 + 1) * sizeof *edges);
+    struct parts p = {malloc((m->triangle_count + 1) * sizeof *p.parent), NULL,
+                      calloc(m->triangle_count + 1, sizeof *p.is_open)};
+    const bool has_memory = weld && edges && p.parent && p.is_open;
+    if (has_memory) {
+        for (uint32_t i = 0; i < m->triangle_count; i++) {
+            p.parent[i] = i;
+        }
+        join_edges(edges, list_edges(m, weld, edges, &audit), &p, &audit);
+        number_parts(p.parent, m->triangle_count, part_of, part_count);
+    }
+    free(weld);
+    free(edges);
+    free(p.parent);
+    free(p.is_open);
+    return has_memory ? 0 : -1;
+}
+
 int mesh_audit(const struct mesh *m, const char *place, struct mesh_audit *audit)
 {
     *audit = (struct mesh_audit){0};

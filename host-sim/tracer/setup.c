@@ -198,17 +198,22 @@ static void doubt_place(const struct setup *s, const struct mesh *m)
     }
 }
 
+int setup_scene_of(const struct setup *s, const struct mesh *m, struct scene *scene)
+{
+    doubt_place(s, m);
+    const struct trace_order order = setup_order(s, 0);
+    const double ground_half_m =
+        s->has_no_ground ? 0 : trace_ground_half_m(&order.grid, s->depression_deg);
+    return scene_open(scene, m, ground_half_m, s->model);
+}
+
 int setup_scene(const struct setup *s, struct scene *scene)
 {
     struct mesh m;
     if (setup_load(s, &m) != 0) {
         return -1;
     }
-    doubt_place(s, &m);
-    const struct trace_order order = setup_order(s, 0);
-    const double ground_half_m =
-        s->has_no_ground ? 0 : trace_ground_half_m(&order.grid, s->depression_deg);
-    const int result = scene_open(scene, &m, ground_half_m, s->model);
+    const int result = setup_scene_of(s, &m, scene);
     mesh_free(&m);
     return result;
 }

@@ -6,6 +6,7 @@
 int target_cmd_model(int argc, char **argv);
 int target_cmd_trace(int argc, char **argv);
 int target_cmd_render(int argc, char **argv);
+int target_cmd_map(int argc, char **argv);
 int target_cmd_sheet(int argc, char **argv);
 int target_cmd_bake(int argc, char **argv);
 int target_cmd_curves(int argc, char **argv);

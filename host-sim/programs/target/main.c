@@ -9,6 +9,7 @@ static const struct hs_command commands[] = {
     {"model", "check a model, describe it, draw it, write it as OBJ", target_cmd_model},
     {"trace", "trace a model and keep every reflection", target_cmd_trace},
     {"render", "make the radar picture of a model, or of traced records", target_cmd_render},
+    {"map", "tell which part of a model made each point of its picture", target_cmd_map},
     {"sheet", "draw a model and its radar picture side by side, over azimuth", target_cmd_sheet},
     {"bake", "make the signature of a model, for the display unit", target_cmd_bake},
     {"curves", "draw the reflection laws: Niu and others, Figures 3 to 6", target_cmd_curves},

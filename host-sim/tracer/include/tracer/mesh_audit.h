@@ -17,6 +17,11 @@ struct mesh_audit {
  * triangle. Returns 0, or -1 for lack of memory, reported with `place`. */
 int mesh_audit(const struct mesh *m, const char *place, struct mesh_audit *audit);
 
+/* Number the bodies that hang together by edges, in the order of their first triangle:
+ * part_of[triangle], from 0. A triangle without area is a part of its own. Returns 0, or -1 for
+ * lack of memory, not reported. */
+int mesh_parts(const struct mesh *m, int32_t *part_of, uint32_t *part_count);
+
 /* Refuse a model that is not made of closed bodies with their outer sides outwards, and tell how to
  * mend it. Returns 0, or -1 with everything that is wrong reported as one error. */
 int mesh_require_closed(const struct mesh_audit *audit, const char *place);

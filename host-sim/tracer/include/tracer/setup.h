@@ -51,6 +51,7 @@ int setup_load(const struct setup *s, struct mesh *m);
 
 /* The model on its ground, and how to trace it. Returns 0, or -1 reported. */
 int setup_scene(const struct setup *s, struct scene *scene);
+int setup_scene_of(const struct setup *s, const struct mesh *m, struct scene *scene); /* loaded */
 struct trace_order setup_order(const struct setup *s, double azimuth_deg);
 
 /* The law that `s` names, for the materials of `r`. Returns 0, or -1 reported. */

@@ -632,6 +632,18 @@ def target_render():
     assert near(document["report"]["peak_dbsm"], find(r"^brightest pixel: (\S+) dBsm", text)[0], 0.01)
 
 
+def target_map():
+    document, text = run("target", "map", "--model", "tank", "--rays", "1", "--csv", here("map.csv"))
+    r = document["report"]
+    shown = re.findall(r"^ *(\d+|ground) .* (\S+) % +(\d+) +(\S+)$", text, re.M)
+    assert len(shown) == len(r["parts"]) > 20 and near(sum(p["power_share"] for p in r["parts"]), 1, 1e-6)
+    for part, (name, power, cells, height) in zip(r["parts"], shown):
+        assert part["part"] == (0 if name == "ground" else int(name)) and part["cells"] == int(cells)
+        assert near(100 * part["power_share"], float(power), 0.01) and near(part["echo_height_m"], float(height), 0.01)
+    heights = find(r"^heights of echoes: (\S+) to (\S+) m", text)
+    assert near(r["least_height_m"], heights[0], 0.01) and near(r["greatest_height_m"], heights[1], 0.01)
+
+
 def target_sheet():
     writes_only("target", "sheet", "--model", "tank", "--rays", "1", "--out", here("sheet.png"))
 
@@ -900,7 +912,7 @@ CHECKS = {"db import": db_import, "db train": db_train, "db segment": db_segment
           "figures figure1": figures("figure1"), "figures table1": figures("table1"), "tables fixed": tables("fixed"),
           "tables grain": tables("grain"), "tables noise": tables("noise"), "tables response": tables("response"),
           "tables grown": tables("grown"), "target model": target_model, "target trace": target_trace,
-          "target render": target_render, "target sheet": target_sheet, "target bake": target_bake,
+          "target render": target_render, "target map": target_map, "target sheet": target_sheet, "target bake": target_bake,
           "target curves": target_curves, "target materials": target_materials, "target bench": target_bench,
           "netem recover": netem_recover, "netem simulate": netem_simulate, "netem score": netem_score,
           "netem train": netem_train, "netem register": netem_register, "netem plot": netem_plot, "netem bake": netem_bake,

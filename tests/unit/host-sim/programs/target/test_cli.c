@@ -251,6 +251,23 @@ TEST(a_signature_is_baked_the_same_by_any_number_of_threads)
                      0);
 }
 
+/* The strongest points of a dihedral by way of both plates, one body: triangle by triangle,
+ * at the height of the seam. A plate without ground comes back once. */
+TEST(a_map_names_parts_triangles_and_heights)
+{
+    assert_int_equal(run("map --model dihedral --no-ground --depression 45 --rays 1 --csv map.csv "
+                         "--out parts.png --heights heights.png >map.txt"),
+                     0);
+    assert_int_equal(shell("awk -F, 'NR > 1 && $3 > best { best = $3; row = $5 \" \" $8; h = $6 } "
+                           "END { print row, h; exit !(row ~ /^2 [12]:[1-4]>[12]:[1-4]$/ && "
+                           "h > 0.019 && h < 0.021) }' map.csv"),
+                     0);
+    assert_int_equal(shell("for f in parts.png heights.png; do "
+                           "head -c 4 $f | tail -c 3 | grep -q PNG || exit 1; done"),
+                     0);
+    assert_int_equal(shell("grep -q '^ground .* 0.00 %' map.txt && test $(wc -l <map.txt) = 4"), 0);
+}
+
 TEST(sheets_and_curves_are_pictures)
 {
     assert_int_equal(run("sheet --model slicy --count 2 --rays 1 --out sheet.png"), 0);
