@@ -6,7 +6,7 @@
 #include <math.h>
 #include <stdlib.h>
 
-const uint32_t fuzz_mutations = 20000;
+const uint32_t fuzz_mutations = 4000;
 
 static bool check_frame(void *context, const struct lm_can_frame *f, int64_t time_us)
 {
