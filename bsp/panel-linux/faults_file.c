@@ -10,8 +10,6 @@
 #include <time.h>
 #include <unistd.h>
 
-enum { REST_NS = 100000000 };
-
 /* Whether these are lines of ours: printable, none too long, ended. The number of lines, or -1. */
 static int count_lines(const char *text, size_t size)
 {
@@ -83,71 +81,47 @@ static void write_file(struct faults_file *f)
     f->is_failing = cause != 0;
 }
 
-/* The faults that the text lacks. Of more than the log keeps at once the oldest are not known. */
-static void take_over(struct faults_file *f, const struct lm_fault_log *log, uint64_t now_us)
+static void take(void *ctx)
 {
+    struct faults_file *f = ctx;
+    f->taken = f->handed;
+}
+
+/* The faults that the text lacks. Of more than the log keeps at once the oldest are not known. */
+static void write_news(void *ctx)
+{
+    struct faults_file *f = ctx;
+    const struct lm_fault_log *log = &f->taken.log;
     const time_t now = time(NULL);
     uint32_t age = log->count - f->written;
     f->written = log->count;
     for (age = age < LM_FAULTS_KEPT ? age : LM_FAULTS_KEPT; age > 0; age--) {
         const struct lm_fault *fault = lm_fault_log_at(log, age - 1);
-        append(f, fault, now - (time_t)((now_us - fault->time_us) / 1000000));
+        append(f, fault, now - (time_t)((f->taken.now_us - fault->time_us) / 1000000));
     }
     write_file(f);
-}
-
-static void *keep_writing(void *ctx)
-{
-    struct faults_file *f = ctx;
-    for (bool is_last = false; !is_last;) {
-        is_last = atomic_load(&f->is_closing);
-        const struct timespec rest = {.tv_nsec = REST_NS};
-        if (!atomic_load(&f->has_news) || atomic_flag_test_and_set(&f->is_taken)) {
-            (void)nanosleep(&rest, NULL);
-            continue;
-        }
-        const struct lm_fault_log log = f->handed;
-        const uint64_t handed_us = f->handed_us;
-        atomic_store(&f->has_news, false);
-        atomic_flag_clear(&f->is_taken);
-        take_over(f, &log, handed_us);
-    }
-    return NULL;
 }
 
 void faults_file_start(struct faults_file *f, const char *path)
 {
     memset(f, 0, sizeof *f);
     f->path = path;
-    atomic_flag_clear(&f->is_taken);
-    if (path[0] == '\0') {
-        return;
-    }
-    read_before(f);
-    const int cause = pthread_create(&f->thread, NULL, keep_writing, f);
-    f->has_thread = cause == 0;
-    if (cause != 0) {
-        report(REPORT_ERROR, "faults: no thread to write them: %s", strerror(cause));
+    if (path[0] != '\0') {
+        read_before(f);
+        hand_over_start(&f->writer, "faults", &(struct hand_over_work){f, take, write_news});
     }
 }
 
 void faults_file_keep(struct faults_file *f, const struct lm_fault_log *log, uint64_t now_us)
 {
-    if (!f->has_thread || log->count == f->told || atomic_flag_test_and_set(&f->is_taken)) {
-        return;
+    if (log->count != f->told && hand_over_begin(&f->writer)) {
+        f->handed = (struct faults_news){*log, now_us};
+        f->told = log->count;
+        hand_over_end(&f->writer);
     }
-    f->handed = *log;
-    f->handed_us = now_us;
-    f->told = log->count;
-    atomic_store(&f->has_news, true);
-    atomic_flag_clear(&f->is_taken);
 }
 
 void faults_file_close(struct faults_file *f)
 {
-    if (f->has_thread) {
-        atomic_store(&f->is_closing, true);
-        (void)pthread_join(f->thread, NULL);
-        f->has_thread = false;
-    }
+    hand_over_close(&f->writer);
 }

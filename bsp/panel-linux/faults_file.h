@@ -11,28 +11,28 @@
 #ifndef PANEL_FAULTS_FILE_H
 #define PANEL_FAULTS_FILE_H
 
-#include <pthread.h>
-#include <stdatomic.h>
 #include <stdbool.h>
 #include <stddef.h>
 
+#include "hand_over.h"
 #include "lm/fault_log.h"
 
 enum { FAULTS_LINES = 32, FAULTS_LINE_BYTES = 64, FAULTS_BYTES = FAULTS_LINES * FAULTS_LINE_BYTES };
+
+struct faults_news {
+    struct lm_fault_log log;
+    uint64_t now_us; /* of the panel's clock when it was handed over */
+};
 
 struct faults_file {
     const char *path;        /* borrowed; "": none are kept */
     char text[FAULTS_BYTES]; /* of the file; the thread's once it runs */
     size_t size;
-    struct lm_fault_log handed; /* between loop and thread; whoever has `is_taken` */
-    uint64_t handed_us;         /* time of the panel's clock when it was handed */
-    atomic_flag is_taken;
-    atomic_bool is_closing, has_news;
-    uint32_t told;    /* faults that the loop has handed over */
-    uint32_t written; /* faults that the thread has put into the text */
-    bool is_failing;  /* told once, until a write succeeds */
-    pthread_t thread;
-    bool has_thread;
+    struct hand_over writer;
+    struct faults_news handed, taken; /* the place, and the thread's copy */
+    uint32_t told;                    /* faults that the loop has handed over */
+    uint32_t written;                 /* faults that the thread has put into the text */
+    bool is_failing;                  /* told once, until a write succeeds */
 };
 
 /* Read the file, tell how many it has and the last one, and start the thread. What is not such a

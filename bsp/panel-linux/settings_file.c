@@ -8,12 +8,9 @@
 #include <fcntl.h>
 #include <stdio.h>
 #include <string.h>
-#include <time.h>
 #include <unistd.h>
 
 static const char magic[8] = "LMSETTG1";
-
-enum { REST_NS = 100000000 };
 
 static void seal(const struct lm_settings *s, uint8_t bytes[SETTINGS_FILE_BYTES])
 {
@@ -30,7 +27,6 @@ const struct lm_settings *settings_file_read(struct settings_file *f, const char
     uint8_t bytes[SETTINGS_FILE_BYTES + 1], sealed[SETTINGS_FILE_BYTES];
     memset(f, 0, sizeof *f);
     f->path = path;
-    atomic_flag_clear(&f->is_taken);
     const int fd = path[0] != '\0' ? open(path, O_RDONLY | O_CLOEXEC) : -1;
     if (fd < 0) {
         if (path[0] != '\0' && errno != ENOENT) {
@@ -61,56 +57,39 @@ static void write_file(struct settings_file *f, const struct lm_settings *s)
     f->written += cause == 0;
 }
 
-static void *keep_writing(void *ctx)
+static void take(void *ctx)
 {
     struct settings_file *f = ctx;
-    struct lm_settings last = f->settings, now;
-    for (bool is_last = false; !is_last;) {
-        is_last = atomic_load(&f->is_closing);
-        const struct timespec rest = {.tv_nsec = REST_NS};
-        if (!atomic_load(&f->has_news) || atomic_flag_test_and_set(&f->is_taken)) {
-            (void)nanosleep(&rest, NULL);
-            continue;
-        }
-        now = f->handed;
-        atomic_store(&f->has_news, false);
-        atomic_flag_clear(&f->is_taken);
-        if (memcmp(&now, &last, sizeof now) != 0) {
-            write_file(f, &now);
-            last = now;
-        }
+    f->taken = f->handed;
+}
+
+static void write_news(void *ctx)
+{
+    struct settings_file *f = ctx;
+    if (memcmp(&f->taken, &f->last, sizeof f->last) != 0) {
+        write_file(f, &f->taken);
+        f->last = f->taken;
     }
-    return NULL;
 }
 
 void settings_file_start(struct settings_file *f)
 {
-    if (f->path == NULL || f->path[0] == '\0') {
-        return;
-    }
-    const int cause = pthread_create(&f->thread, NULL, keep_writing, f);
-    f->has_thread = cause == 0;
-    if (cause != 0) {
-        report(REPORT_ERROR, "settings: no thread to write them: %s", strerror(cause));
+    if (f->path != NULL && f->path[0] != '\0') {
+        f->last = f->settings;
+        hand_over_start(&f->writer, "settings", &(struct hand_over_work){f, take, write_news});
     }
 }
 
 void settings_file_keep(struct settings_file *f, const struct lm_unit *unit, uint64_t now_us)
 {
-    if (!f->has_thread || now_us < f->next_us || atomic_flag_test_and_set(&f->is_taken)) {
-        return;
+    if (now_us >= f->next_us && hand_over_begin(&f->writer)) {
+        lm_settings_give(unit, &f->handed);
+        f->next_us = now_us + SETTINGS_KEPT_US;
+        hand_over_end(&f->writer);
     }
-    lm_settings_give(unit, &f->handed);
-    atomic_store(&f->has_news, true);
-    atomic_flag_clear(&f->is_taken);
-    f->next_us = now_us + SETTINGS_KEPT_US;
 }
 
 void settings_file_close(struct settings_file *f)
 {
-    if (f->has_thread) {
-        atomic_store(&f->is_closing, true);
-        (void)pthread_join(f->thread, NULL);
-        f->has_thread = false;
-    }
+    hand_over_close(&f->writer);
 }

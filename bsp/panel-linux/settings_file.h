@@ -11,9 +11,9 @@
 #ifndef PANEL_SETTINGS_FILE_H
 #define PANEL_SETTINGS_FILE_H
 
-#include <pthread.h>
 #include <stdatomic.h>
 
+#include "hand_over.h"
 #include "lm/unit.h"
 
 enum { SETTINGS_KEPT_US = 1000000, SETTINGS_FILE_BYTES = 8 + LM_SETTINGS_BYTES + 4 };
@@ -21,12 +21,10 @@ enum { SETTINGS_KEPT_US = 1000000, SETTINGS_FILE_BYTES = 8 + LM_SETTINGS_BYTES +
 struct settings_file {
     const char *path;            /* borrowed; "": none is kept */
     struct lm_settings settings; /* those read */
-    struct lm_settings handed;   /* between loop and thread; whoever has `is_taken` */
-    atomic_flag is_taken;
-    atomic_bool is_closing, has_news;
+    struct hand_over writer;
+    struct lm_settings handed, taken; /* the place, and the thread's copy */
+    struct lm_settings last;          /* the file's; the thread's once it runs */
     uint64_t next_us;
-    pthread_t thread;
-    bool has_thread;
     atomic_uint written; /* times */
 };
 

@@ -127,5 +127,5 @@ TEST(a_folder_that_is_not_there_does_not_stop_the_panel)
     faults_file_close(&f);
     assert_true(f.is_failing);
     faults_file_start(&f, "");
-    assert_false(f.has_thread);
+    assert_false(f.writer.has_thread);
 }

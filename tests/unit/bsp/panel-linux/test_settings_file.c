@@ -101,6 +101,6 @@ TEST(a_folder_that_is_not_there_does_not_stop_the_panel)
     assert_int_equal(f.written, 0);
     assert_null(settings_file_read(&f, ""));
     settings_file_start(&f);
-    assert_false(f.has_thread);
+    assert_false(f.writer.has_thread);
     free(u);
 }
