@@ -291,15 +291,6 @@ void lm_scan_conv_sector(const struct lm_plane *plane, const struct lm_ppi *ppi,
     paint_rows(w, rows.end - middle.end, range, &columns, grey, cells);
 }
 
-/* Blacken the columns from `first` up to, not including, `end`. `apex` is the pixel of their row at
- * column 0. */
-static void clear_columns(uint8_t *apex, int64_t first, int64_t end)
-{
-    if (first < end) {
-        memset(apex + first, 0, (size_t)(end - first));
-    }
-}
-
 void lm_plane_keep_wedge(const struct lm_plane *plane, const struct lm_ppi *ppi, fx_bam_t left,
                          fx_bam_t right)
 {
@@ -314,13 +305,13 @@ void lm_plane_keep_wedge(const struct lm_plane *plane, const struct lm_ppi *ppi,
     for (int32_t row = bottom; row < top; row++) {
         uint8_t *apex = plane->pixels + (ptrdiff_t)(ppi->apex_y_px - 1 - row) * plane->width_px +
                         ppi->apex_x_px;
-        if (row < 0) {
-            clear_columns(apex, first, end);
-            continue;
+        int64_t from = end, to = end; /* below the apex nothing is kept */
+        if (row >= 0) {
+            from = fx_clamp_i64(next_column(&left_edge), first, end);
+            to = fx_clamp_i64(next_column(&right_edge), from, end);
         }
-        const int64_t from = fx_clamp_i64(next_column(&left_edge), first, end);
-        clear_columns(apex, first, from);
-        clear_columns(apex, fx_clamp_i64(next_column(&right_edge), from, end), end);
+        memset(apex + first, 0, (size_t)(from - first));
+        memset(apex + to, 0, (size_t)(end - to));
     }
 }
 

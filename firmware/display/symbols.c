@@ -28,11 +28,12 @@ static struct lm_pen picture_pen(const struct lm_glass *g)
     return pen;
 }
 
-/* Left edge of the frame's part that no label of the left keys reaches into. A label has at most
- * five characters, from the second dot of the glass, and ground around them. */
+/* Where the frame's symbols begin beside the labels of the left keys, some dots away: a tick right
+ * behind a word is read as a sign. A label has at most five characters, from the second dot of the
+ * glass, and ground around them. */
 static int32_t beside_labels(const struct lm_glass *g, const struct lm_pen *pen)
 {
-    return fx_max_i32(g->frame->left_px, 2 * pen->dot_px + 5 * lm_column_px(pen) + pen->dot_px);
+    return fx_max_i32(g->frame->left_px, 3 * pen->dot_px + 5 * lm_column_px(pen)) + 4 * pen->dot_px;
 }
 
 static void line(const struct lm_pen *pen, int32_t x0, int32_t y0, int32_t x1, int32_t y1)
@@ -70,7 +71,7 @@ static void draw_bracket(const struct lm_glass *g, const struct lm_symbols *s, i
 {
     const struct lm_pen pen = picture_pen(g);
     const int32_t dot = pen.dot_px, square_left = s->view.middle.x - s->view.radius_px;
-    const int32_t x = fx_max_i32(square_left + 4 * dot, beside_labels(g, &pen) + 10 * dot);
+    const int32_t x = fx_max_i32(square_left + 4 * dot, beside_labels(g, &pen) + 6 * dot);
     const int32_t y = s->view.middle.y - s->view.radius_px + 4 * dot;
     line(&pen, x, y, x + length, y);
     line(&pen, x, y, x, y + 3 * dot);
@@ -168,7 +169,7 @@ static void draw_antenna(const struct lm_glass *g, const struct lm_symbols *s)
 static void draw_gain(const struct lm_glass *g, int32_t gain_db)
 {
     const struct lm_pen pen = picture_pen(g);
-    const int32_t dot = pen.dot_px, x = beside_labels(g, &pen) + 4 * dot;
+    const int32_t dot = pen.dot_px, x = beside_labels(g, &pen);
     const int32_t top = g->frame->top_px, high = part_of_half(g, 250);
     line(&pen, x, top, x, top + high);
     line(&pen, x, top, x + 3 * dot, top);
@@ -260,7 +261,7 @@ static void draw_track(const struct lm_glass *g, const struct lm_symbols *s)
 static void write_track(const struct lm_glass *g, const struct lm_symbols *s)
 {
     const struct lm_pen pen = lm_symbol_pen(g);
-    lm_write(&pen, beside_labels(g, &pen) + 2 * pen.dot_px,
+    lm_write(&pen, beside_labels(g, &pen),
              g->frame->top_px + g->frame->height_px - 2 * lm_row_px(&pen), s->track_words.words,
              g->palette->ink);
 }

@@ -126,7 +126,7 @@ void lm_receiver_set(struct lm_receiver *r, const struct lm_radar *radar,
     r->first_m_q8 = slant->first_m_q8;
     r->cell_m_q8 = slant->cell_m_q8;
     r->cells = slant->cells;
-    r->hole = slant->hole;
+    r->unlit = slant->hole;
     r->looks_log2 = fx_min_u32(radar->receiver.noise_looks_log2, LM_NOISE_LOOKS_LOG2_MAX);
     r->loss_db_q8 = r->rise_db_q8 = 0;
     set_bins(r, radar, height_m_q10, range, fov);
@@ -209,7 +209,7 @@ void lm_receiver_pulse(const struct lm_receiver *r, uint32_t *power_q24)
 void lm_receiver_fade(const struct lm_receiver *r, uint32_t floor_q24,
                       const uint32_t *restrict speckle_q24, uint32_t *restrict power_q24)
 {
-    const struct lm_k_fade fade = {speckle_q24, floor_q24, r->hole};
+    const struct lm_k_fade fade = {speckle_q24, floor_q24, r->unlit};
     lm_k_fade(&fade, power_q24, r->cells);
 }
 

@@ -20,8 +20,9 @@ enum {
     LINES_APART = 8,
     CHIP_SIDE_MOST = 32, /* most pixels of a row of a chip: it bounds the cost of a line */
     WINDOW_LINES_MIN = 32,
-    WINDOW_LINES_ENOUGH = 256,            /* for beams that need no more */
-    FOREGROUND_LEAST_M_Q8 = LM_M_Q8(2000) /* a window that begins nearer starts at the antenna */
+    WINDOW_LINES_ENOUGH = 256,             /* for beams that need no more */
+    FOREGROUND_LEAST_M_Q8 = LM_M_Q8(2000), /* a window that begins nearer starts at the antenna */
+    UNLIT_LEAST = FX_BAM_DEG(1) / 2 /* a beam that hardly looks down lights ground as if by this */
 };
 
 static const struct lm_fov_row *fov_of(const struct lm_sector *s)
@@ -239,6 +240,20 @@ static void refresh_ranges(struct lm_sector *s, struct lm_tile_cache *tiles, int
 
 /* ---- sweeps ---- */
 
+/* Set the first bin into which ground leaks: that of flat ground at the beam's lower half-power
+ * edge, `down` below the horizon. Nearer ground is not lit, nor is what has its range beside it.
+ * Heights are below 2^26, and the sine is above 2^23: the quotient is below 2^31. */
+static void set_unlit(struct lm_sector *s, int32_t down)
+{
+    const int32_t above_m_q10 = fx_max_i32(s->grid.height_m_q10 - s->grid.reference_m_q10, 0);
+    const int32_t held = fx_clamp_i32(down, (int32_t)UNLIT_LEAST, (int32_t)FX_BAM_90);
+    const uint32_t slant_m_q8 =
+        (uint32_t)(((uint64_t)above_m_q10 << 28) / (uint32_t)fx_sin_q30((fx_bam_t)held));
+    const uint32_t past_m_q8 = fx_max_u32(slant_m_q8, s->edge_m_q8) - s->edge_m_q8;
+    const uint32_t bins = (past_m_q8 + s->slant.cell_m_q8 / 2) / s->slant.cell_m_q8;
+    s->receiver.unlit = fx_max_u32(fx_min_u32(bins, s->slant.cells), s->slant.hole);
+}
+
 /* Set the tilt of the beam's axis: as commanded, or at the far end of the display; then the offset
  * of its bar. */
 static void set_tilt(struct lm_sector *s)
@@ -251,8 +266,10 @@ static void set_tilt(struct lm_sector *s)
         set->is_tilt_manual ? set->tilt : lm_antenna_auto_tilt(above_m, fx_max_u32(far_m, 1));
     const int32_t bars = mode_of(s)->bars, bar = (int32_t)(s->sweep % (uint32_t)bars);
     s->tilt = axis + (2 * bar - bars + 1) * (int32_t)(antenna->bar_spacing / 2);
-    s->fan = lm_antenna_fan_at(s->tilt + lm_malfunction_bam(s->malfunctions, LM_MALFUNCTION_TILT),
-                               set->is_pencil ? 0 : antenna->fan);
+    const int32_t tilt = s->tilt + lm_malfunction_bam(s->malfunctions, LM_MALFUNCTION_TILT);
+    const fx_bam_t fan = set->is_pencil ? 0 : antenna->fan;
+    s->fan = lm_antenna_fan_at(tilt, fan);
+    set_unlit(s, (int32_t)(fan + antenna->elevation_beam / 2) - tilt);
 }
 
 void lm_sector_set_beam(struct lm_sector *s, const struct lm_beam_setting *setting)
@@ -700,9 +717,9 @@ static void fade_line(struct lm_sector *s)
     s->grain.step_q16 = s->receiver.grain_step_q16;
     lm_grain_curve_set(&curve, taps->looks_q8);
     lm_grain_powers(&curve, &s->grain, speckle_q24, s->slant.cells);
-    const uint32_t hole = s->slant.hole;
+    const uint32_t unlit = s->receiver.unlit;
     const uint32_t floor_q24 =
-        lm_sector_floor_run(&s->floor, s->line, s->power_q24 + hole, s->slant.cells - hole);
+        lm_sector_floor_run(&s->floor, s->line, s->power_q24 + unlit, s->slant.cells - unlit);
     lm_receiver_fade(&s->receiver, floor_q24, speckle_q24, s->power_q24);
     s->grain.row_q16 += (uint64_t)s->width * taps->ratio_q8 * 362 / s->radar->antenna.azimuth_beam;
 }

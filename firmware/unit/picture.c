@@ -95,6 +95,9 @@ struct lm_cursor_scene lm_picture_cursor_scene(const struct lm_picture *p)
 void lm_picture_follow_view(struct lm_picture *p, bool is_standing)
 {
     const bool is_held = is_standing && methods(p)->moves;
+    if (!is_held && p->is_view_held) {
+        lm_picture_remove(p); /* lines of long ago and of now would stand side by side */
+    }
     if (!is_held || !p->is_view_held) {
         p->view = methods(p)->view(p);
     }

@@ -66,6 +66,12 @@ double ref_elevation_db(const struct ref_antenna *a, double tilt_deg, double tan
     return -80 * log10(2) * pow(step / (a->elevation_beam_deg * rad), 2);
 }
 
+double ref_unlit_m(const struct ref_antenna *a, double tilt_deg, double height_m)
+{
+    const double down_deg = a->fan_deg + a->elevation_beam_deg / 2 - tilt_deg;
+    return fmax(height_m, 0) / sin(fmin(fmax(down_deg, 0.5), 90) * rad);
+}
+
 double ref_auto_tilt_deg(double height_m, double range_m)
 {
     return atan(-height_m / range_m - range_m / (2 * REF_EFFECTIVE_EARTH_M)) / rad;

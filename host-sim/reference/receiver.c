@@ -72,24 +72,26 @@ void ref_pulse(double *power, size_t count, double bins)
     }
 }
 
-/* Bins of the altitude hole, before the nearest ground. */
-static size_t hole_of(const struct ref_receiver *r)
+/* Bins before the nearest ground that the beam lights: those of the altitude hole, and more. */
+static size_t unlit_of(const struct ref_receiver *r)
 {
     size_t i = 0;
-    while (i < r->bins.count &&
-           ref_ground_of_slant(r->bins.first_m + (double)i * r->bins.step_m, r->height_m) <= 0) {
-        i++;
+    for (; i < r->bins.count; i++) {
+        const double slant_m = r->bins.first_m + (double)i * r->bins.step_m;
+        if (slant_m >= r->unlit_m && ref_ground_of_slant(slant_m, r->height_m) > 0) {
+            break;
+        }
     }
     return i;
 }
 
-/* Add what the ground leaves in the bins that have any. */
+/* Add what the ground leaves in the bins that have any that is lit. */
 static void add_leak(const struct ref_receiver *r, uint32_t line, double *power)
 {
-    const size_t hole = hole_of(r);
-    ref_leak_line(r->leak, r->leak_most_db, r->leak_lines, line, power + hole,
-                  r->bins.count - hole);
-    for (size_t i = hole; i < r->bins.count; i++) {
+    const size_t unlit = unlit_of(r);
+    ref_leak_line(r->leak, r->leak_most_db, r->leak_lines, line, power + unlit,
+                  r->bins.count - unlit);
+    for (size_t i = unlit; i < r->bins.count; i++) {
         power[i] += r->leak->mean * pow(10, r->leak_db / 10);
     }
 }

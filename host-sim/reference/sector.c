@@ -48,6 +48,7 @@ void ref_sector_line(const struct ref_sector_line *s, const struct ref_bin *cons
     }
     double speckle[REF_CELLS_MAX];
     struct ref_receiver receiver = s->receiver;
+    receiver.unlit_m = ref_unlit_m(&s->antenna, s->tilt_deg, receiver.height_m);
     ref_beam_sum(&s->look, lines, sum, s->receiver.bins.count);
     if (s->looks > 0) {
         const double pulse_bins = ref_pulse_m(receiver.pulse_s) / receiver.bins.step_m;

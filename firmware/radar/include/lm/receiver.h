@@ -16,7 +16,7 @@ enum { LM_PULSE_REACH_MAX = 4 }; /* most bins on either side that a pulse covers
 struct lm_receiver {
     uint32_t first_m_q8, cell_m_q8; /* slant range of bin 0's centre, and between centres */
     uint32_t cells;                 /* number of bins */
-    uint32_t hole;                  /* of them before the nearest ground */
+    uint32_t unlit;                 /* of them before ground that the beam lights: none leaks */
     uint32_t looks_log2;            /* looks of the noise */
     int32_t loss_db_q8, rise_db_q8; /* by malfunctions: of the signal, and of the noise */
     /* Pulse: weight of each bin m to either side in a bin's power. weight_q16[0] plus twice the

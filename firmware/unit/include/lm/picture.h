@@ -120,7 +120,8 @@ bool lm_picture_is_ready(struct lm_picture *p, uint64_t now_us);
 bool lm_picture_draw_line(struct lm_picture *p, uint64_t now_us, uint32_t *azimuths);
 
 /* Update the view, and locate the cursor in it. A picture that moves with the aircraft keeps the
- * view it was drawn with while it `is_standing`. */
+ * view it was drawn with while it `is_standing`. When that ends, it is removed, and swept anew
+ * where the antenna is. */
 void lm_picture_follow_view(struct lm_picture *p, bool is_standing);
 
 /* True if the picture is drawn around the aircraft, at the page's range scale, and moves with it.

@@ -348,6 +348,7 @@ struct ref_receiver {
     struct ref_leak *leak;        /* borrowed: the ground's mean so far; NULL: nothing leaks */
     double leak_db, leak_most_db; /* what is left of it, and what a bin counts for at most */
     unsigned leak_lines;          /* that the beam is wide */
+    double unlit_m;               /* slant range from which on it leaks: ref_unlit_m */
     double stc_m;                 /* r_s */
     double pulse_s;
 };
@@ -479,6 +480,9 @@ struct ref_antenna {
 /* Elevation pattern at a tangent, in dB: at most 0, which is its value within the fan. Tilts are
  * positive upwards. */
 double ref_elevation_db(const struct ref_antenna *a, double tilt_deg, double tangent);
+
+/* Slant range of flat ground `height_m` below at the lower half-power edge of the beam. */
+double ref_unlit_m(const struct ref_antenna *a, double tilt_deg, double height_m);
 
 /* Tilt towards flat ground `height_m` below at `range_m`, and that of bar 0..bars-1. */
 double ref_auto_tilt_deg(double height_m, double range_m);

@@ -253,6 +253,9 @@ static void judge_receiver(struct trial *t, uint32_t line, uint32_t sweep,
 {
     const struct lm_sector *s = &t->w->sector;
     struct ref_receiver receiver = receiver_of(t);
+    const struct ref_antenna antenna = antenna_of(&t->w->radar);
+    receiver.unlit_m =
+        ref_unlit_m(&antenna, hs_degrees((fx_bam_t)t->w->sector.tilt), height_m(&t->w->sector));
     struct ref_weather_line weather;
     receiver.leak = &t->leak;
     receiver.leak_lines =

@@ -74,3 +74,43 @@ TEST(ground_leaves_the_window_in_a_turn_too)
     fly_past(LM_FOV_EXP, -3, 30);
     fly_past(LM_FOV_DBS1, -3, 30);
 }
+
+/* Stand still for ten seconds by a key, pressed twice, and return the lit pixels right after. */
+static uint32_t lit_after_standing(struct rig *r, int key)
+{
+    press(r, key);
+    run(r, 10);
+    press(r, key);
+    return lit_pixels(r);
+}
+
+/* The aircraft flies 1.5 km meanwhile: lines of before and of now would not fit together. */
+TEST(ground_from_before_a_freeze_is_not_shown_beside_that_of_now)
+{
+    static const int freeze = 7, override = 4;
+    struct rig *r = fly_rig();
+    run(r, 5);
+    for (int n = 0; n < 2; n++) {
+        const uint32_t before = lit_pixels(r);
+        const uint32_t after = lit_after_standing(r, n == 0 ? freeze : override);
+        assert_true(before > 20000);
+        assert_in_range(after, 1, before / 4); /* what a tenth of a second sweeps */
+        run(r, 6);
+        assert_true(lit_pixels(r) > 2 * after); /* swept again; the small country ends ahead */
+    }
+    free_rig(r);
+}
+
+TEST(a_patch_stays_behind_a_freeze)
+{
+    struct rig *r = fly_rig();
+    command(r, patch_here);
+    run(r, 8);
+    const uint32_t before = plane_sum(r);
+    press(r, 7);
+    run(r, 2);
+    press(r, 7);
+    assert_true(before != 0);
+    assert_int_equal(plane_sum(r), before);
+    free_rig(r);
+}
