@@ -23,7 +23,7 @@ world() {
         --config db="$bin/landmass-db" options="$options" out=$out/world.lmdb work=$out shards="${WORLD_SHARDS:-$((2 * cores))}"
 }
 echo "== Plan and estimate"
-world --quiet all -- estimate
+world estimate --quiet rules
 echo "== Shards, image, pictures"
 world
 echo "== Look at:"

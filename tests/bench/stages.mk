@@ -22,6 +22,13 @@ $(O)/bin/tests/bench/test_soak: tests/bench/test_soak.sh $(SOAK)
 	@mkdir -p $(@D)
 	@cp $< $@
 	@chmod +x $@
+WORLD_FLIGHTS := $(O)/bin/tests/bench/world_flights
+PROGRAMS += $(WORLD_FLIGHTS)
+$(WORLD_FLIGHTS): $(O)/tests/bench/world_flights.o $(LIB_support) $(LIB_hs) $(LIB_firmware) $(LIB_fixed)
+$(WORLD_FLIGHTS): LDLIBS := -lcmocka -lpng -lm
+.PHONY: world-flights
+world-flights: $(WORLD_FLIGHTS) ## Fly round the Earth over WORLD=FILE.lmdb: tiles late, bytes a second, steps; some minutes
+	@$(WORLD_FLIGHTS) $(or $(WORLD),build/world/world.lmdb)
 .PHONY: soak
 soak: $(SOAK) ## Two displays for an hour on a bus that is never idle: nothing may be lost (SOAK_S=3600)
 	@$(SOAK) $(SOAK_S)

@@ -167,6 +167,28 @@ def on_slurm(whole):
         nodes.end()
 
 
+def coasts():
+    """Land and water of a real coast, against points that GMT answered from the same shorelines at full resolution."""
+    data = os.environ.get("LANDMASS_DATA")
+    name = "the shores of a world against 1,200 points of GSHHG"
+    if not shutil.which("gmt") or not os.path.exists("/usr/share/gmt-gshhg/binned_GSHHS_f.nc"):
+        skip(name, "gmt or gmt-gshhg-full missing; make deps-world installs them")
+        return
+    if not data:
+        skip(name, "LANDMASS_DATA is not set")
+        return
+    earth = [sys.executable, "-B", WORLD + "/earth.py"]
+    told = ""
+    for box, place in (("7,43,8,44", "nice_N43E007"), ("-125,48,-124,49", "washington_N48W125")):
+        made = subprocess.run([*earth, "--relief", data + "/etopo20_global", "--out", "ground", "--step", "20", "--only=" + box],
+                              capture_output=True, text=True)
+        told += made.stderr + subprocess.run(
+            [*earth, "--check", "%s/gshhg_coasts/derived_points_land_%s.csv" % (data, place), "--out", "ground"],
+            capture_output=True, text=True).stdout
+    right = [int(line.split()[1]) for line in told.splitlines()]
+    check(name, len(right) == 2 and min(right) >= 590 and told.count(" 0 wrong elsewhere") == 2, told)
+
+
 def main():
     with tempfile.TemporaryDirectory(ignore_cleanup_errors=True) as work:
         os.chdir(work)
@@ -182,6 +204,7 @@ def main():
                 skip("two nodes of Slurm", missing)
             else:
                 on_slurm(whole)
+        coasts()
         os.chdir("/")
     print("1..%d" % len(CHECKS))
     sys.exit(0 if all(CHECKS) else 1)
