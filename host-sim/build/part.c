@@ -238,12 +238,19 @@ static int check_head(const struct build_part *p)
     return 0;
 }
 
+/* Of a part that are looked at before their memory is given back. */
+static const size_t checked_bytes = (size_t)32 << 20;
+
 static int check_body(const struct build_part *p)
 {
     struct image_sha256 sha;
     char digest[IMAGE_SHA256_TEXT];
     image_sha256_begin(&sha);
-    image_sha256_add(&sha, p->bytes + BUILD_PART_HEADER_BYTES, p->size - BUILD_PART_HEADER_BYTES);
+    for (size_t at = BUILD_PART_HEADER_BYTES, bytes; at < p->size; at += bytes) {
+        bytes = p->size - at < checked_bytes ? p->size - at : checked_bytes;
+        image_sha256_add(&sha, p->bytes + at, bytes);
+        build_part_release(p);
+    }
     image_sha256_end(&sha, digest);
     return memcmp(digest, p->head.body_sha256, sizeof p->head.body_sha256) == 0
                ? 0
@@ -348,6 +355,11 @@ static bool is_record(const struct lm_tile *t, const struct image_frame *f, int 
     return t->lod == level && t->zone == f->zone && t->row == f->row && t->column == f->column &&
            t->post_shift <= LM_TILE_POST_SHIFT_MAX && is_elevation(t->base_m_q6) &&
            t->block_bytes == 0;
+}
+
+void build_part_release(const struct build_part *p)
+{
+    (void)madvise((void *)(uintptr_t)p->bytes, p->size, MADV_DONTNEED);
 }
 
 int build_part_take(const struct build_part *p, uint32_t entry, const struct image_frame *frame,

@@ -1104,7 +1104,7 @@ static int make_part(struct build_context *b, const struct build_settings *s,
     return 0;
 }
 
-static void report_cost(double seconds)
+void build_job_report_cost(double seconds)
 {
     struct rusage used;
     if (getrusage(RUSAGE_SELF, &used) == 0) {
@@ -1162,7 +1162,7 @@ int build_job_shard(const struct build_settings *given)
         build_work_free(&work);
     }
     if (result == 0) {
-        report_cost(build_job_seconds() - start);
+        build_job_report_cost(build_job_seconds() - start);
     }
     hs_list_free(&s.terrain);
     free(b);

@@ -26,8 +26,11 @@ struct join {
     struct build_part *parts; /* owned; by shard */
     char **names;             /* owned, as are these: of parts in a folder */
     struct build_context *b;
-    int last; /* where the last tile was found */
+    int last;       /* where the last tile was found */
+    uint32_t taken; /* tiles since the parts' memory was given back */
 };
+
+enum { RELEASE_TILES = 512 }; /* at most 58 MB of the parts, as the tile above needs 95 kB of one */
 
 /* Is this part the one of its shard in the plan? */
 static int check_part(const struct build_work *work, const struct build_part *p)
@@ -112,12 +115,23 @@ static int open_parts(struct join *j, const char *folder, const struct hs_list *
     return 0;
 }
 
+static void release_parts(struct join *j)
+{
+    for (int i = 0; i < j->work.shard_count; i++) {
+        build_part_release(&j->parts[i]);
+    }
+    j->taken = 0;
+}
+
 /* As struct build_made has it. */
 static int take(void *ctx, int level, uint32_t row, uint32_t column, struct lm_tile *record,
                 struct build_tile *tile)
 {
     struct join *j = ctx;
     const struct build_plan *plan = &j->b->plan;
+    if (++j->taken == RELEASE_TILES) {
+        release_parts(j);
+    }
     const struct lm_band *band = build_plan_band(plan, level, row);
     const uint8_t shift = (uint8_t)(plan->shift0 + (unsigned)level);
     for (int i = 0; i < j->work.shard_count; i++) {
@@ -174,6 +188,7 @@ static int make_image(struct join *j, const char *folder, const struct hs_list *
     }
     if (result == 0) {
         build_job_print(j->b, &j->settings, &extras, &report, build_job_seconds() - start);
+        build_job_report_cost(build_job_seconds() - start);
     }
     build_job_free_extras(&extras);
     return result;

@@ -82,6 +82,8 @@ struct build_part {
 int build_part_open(struct build_part *p, const char *path);
 /* Harmless on a zeroed struct. */
 void build_part_close(struct build_part *p);
+/* Give back the memory that the part's bytes take; they are read again as they are needed. */
+void build_part_release(const struct build_part *p);
 
 /* The record of a directory entry, and what the tile above it needs into `tile` unless it is NULL.
  * Returns 1, 0 where the part has no such tile, or -1 with the error reported: the record is of
