@@ -21,12 +21,14 @@ static inline uint16x8_t neon_weights(uint16x8_t halves)
     return vshrq_n_u16(vshlq_n_u16(halves, 6), 8);
 }
 
-/* Where the points of four places are, in bytes from the own ones of the pool's first record. */
-static inline uint32x4_t neon_offsets(uint32x4_t record, uint32x4_t north, uint32x4_t east)
+/* Store where the points of eight places are, in bytes from the pool's first record. Those of a
+ * record take 16 bits. */
+static inline void neon_store_offsets(uint32_t *offset, uint32x4x2_t record, uint16x8_t row,
+                                      uint16x8_t column)
 {
-    const uint32x4_t across = vsraq_n_u32(record, east, 26);
-    const uint32x4_t at = vmlaq_n_u32(across, vshrq_n_u32(north, 26), LM_TILE_POINTS);
-    return vshlq_n_u32(at, 2);
+    const uint16x8_t at = vshlq_n_u16(vmlaq_n_u16(column, row, LM_TILE_POINTS), 2);
+    vst1q_u32(offset, vaddw_u16(record.val[0], vget_low_u16(at)));
+    vst1q_u32(offset + 4, vaddw_high_u16(record.val[1], at));
 }
 
 struct neon_source {

@@ -13,7 +13,7 @@
  * order are those of c/tile_blend.c. The contest of classes, what has grown and heights are left
  * out where none of the sixteen needs them. */
 
-enum { PLACES = 2 * LM_LANES, NATURAL = 1, CROWNED = 2, FLAT = 4 };
+enum { PLACES = 2 * LM_LANES, CROWNED = 2, FLAT = 4, IS_NATURAL = 0x80 };
 
 /* share_of_weight of c/tile_blend.c. */
 static const uint8_t share_of_weight[64] = {
@@ -24,13 +24,15 @@ static const uint8_t share_of_weight[64] = {
 };
 
 /* A map, as the vectors look it up: marks of each class, and heights of height codes, lower bytes
- * and upper bytes. */
+ * and upper bytes. Of natural classes `most` and `least` are the same number, IS_NATURAL and the
+ * class; of others `most` is the least and `least` the most there is. A crowned class has them the
+ * wrong way round: what has grown counts where the most of four cells is above the least. */
 struct neon_map {
     struct neon_source posts, cells;
     const uint8_t *grown;
     int32x4_t down; /* to texels, or to sixteenths of one */
     bool is_stepped;
-    uint8x16_t marks, height_dm[2];
+    uint8x16_t marks, most, least, height_dm[2];
 };
 
 /* Where sixteen places are: north and east. */
@@ -75,42 +77,37 @@ static inline uint8x16_t neon_marks(uint32_t mask, uint8_t mark)
 
 static inline struct neon_map neon_map_of(const struct lm_k_blend *map)
 {
+    const uint8x16_t number = {128, 129, 130, 131, 132, 133, 134, 135,
+                               136, 137, 138, 139, 140, 141, 142, 143};
     const uint8x16_t low = vreinterpretq_u8_u16(vld1q_u16(map->height_dm_of_code));
     const uint8x16_t high = vreinterpretq_u8_u16(vld1q_u16(map->height_dm_of_code + 8));
+    const uint8x16_t natural = neon_marks(map->natural, UINT8_MAX);
+    const uint8x16_t crowned = neon_marks(map->crowned, UINT8_MAX);
     return (struct neon_map){
         .posts = neon_source_of(map->points),
         .cells = neon_source_of(map->points - LM_TILE_POINTS - 1),
         .grown = (const uint8_t *)map->grown,
         .down = vdupq_n_s32((map->is_stepped ? 0 : 4) - (int32_t)map->grown_shift),
         .is_stepped = map->is_stepped,
-        .marks =
-            vorrq_u8(vorrq_u8(neon_marks(map->natural, NATURAL), neon_marks(map->crowned, CROWNED)),
-                     neon_marks(map->flat, FLAT)),
+        .marks = vorrq_u8(neon_marks(map->crowned, CROWNED), neon_marks(map->flat, FLAT)),
+        .most = vorrq_u8(vandq_u8(natural, number), vandq_u8(crowned, vdupq_n_u8(1))),
+        .least = vbicq_u8(vornq_u8(number, natural), crowned),
         .height_dm = {vuzp1q_u8(low, high), vuzp2q_u8(low, high)},
     };
 }
 
 /* ---- places and points ---- */
 
-/* A coordinate half a cell further, in 2^-25 of a tile. */
-static inline uint32x4_t neon_half_on(uint32x4_t at)
+/* Upper halves of the coordinates of eight places, half a cell further, in 2^-15 of a tile. */
+static inline uint16x8_t neon_half_on(uint16x8_t half)
 {
-    return vhaddq_u32(at, vdupq_n_u32(1u << 25));
+    return vhaddq_u16(half, vdupq_n_u16(1 << 9));
 }
 
 /* Ways from the middles of cells, in 128ths. */
-static inline uint16x8_t neon_from_middles(uint16x8_t half)
+static inline uint16x8_t neon_from_middles(uint16x8_t half_on)
 {
-    const uint16x8_t half_a_cell = vdupq_n_u16(1 << 9);
-    return vshrq_n_u16(vshlq_n_u16(vaddq_u16(half, half_a_cell), 6), 9);
-}
-
-/* Where the south-western of the four cells is, in bytes from the record's first point. */
-static inline uint32x4_t neon_corner_offsets(uint32x4_t record, uint32x4_t north_q25,
-                                             uint32x4_t east_q25)
-{
-    const uint32x4_t across = vsraq_n_u32(record, east_q25, 25);
-    return vshlq_n_u32(vmlaq_n_u32(across, vshrq_n_u32(north_q25, 25), LM_TILE_POINTS), 2);
+    return vshrq_n_u16(vshlq_n_u16(half_on, 7), 9);
 }
 
 /* Upper eight bits of sixteen numbers of 14. */
@@ -296,28 +293,38 @@ static inline struct neon_grown neon_grown_between(const struct neon_map *map,
 
 /* ---- the contest of classes ---- */
 
-/* The class that has won so far: number, weight, marks. */
+/* A class with its weight: the one that has won so far, or one that challenges it. */
 struct neon_winner {
-    uint8x16_t kind, weight, marks;
+    uint8x16_t kind, weight, most; /* the map's `most` of the class */
 };
 
-/* Let a class challenge the winner: it wins if weight (128 + lean) > winner's (128 - lean). The
- * lean is within 115 of 0, so that a byte holds both factors. */
-static inline void neon_challenge(struct neon_winner *w, struct neon_winner k, int8x16_t lean_q7)
+/* Factors of the weight of a class that is above the winner's, and of one that is below. */
+struct neon_factors {
+    uint8x16_t above, below;
+};
+
+static inline void neon_take(struct neon_winner *w, const struct neon_winner *k, uint8x16_t takes)
 {
-    const uint8x16_t are_natural = vtstq_u8(vandq_u8(k.marks, w->marks), vdupq_n_u8(NATURAL));
-    const int8x16_t leaning = vbslq_s8(vcgtq_u8(k.kind, w->kind), lean_q7, vnegq_s8(lean_q7));
-    const uint8x16_t lean = vandq_u8(vreinterpretq_u8_s8(leaning), are_natural);
-    const uint8x16_t for_it = vaddq_u8(vdupq_n_u8(128), lean);
-    const uint8x16_t against = vsubq_u8(vdupq_n_u8(128), lean);
-    const uint16x8_t low = vcgtq_u16(vmull_u8(vget_low_u8(k.weight), vget_low_u8(for_it)),
-                                     vmull_u8(vget_low_u8(w->weight), vget_low_u8(against)));
-    const uint16x8_t high =
-        vcgtq_u16(vmull_high_u8(k.weight, for_it), vmull_high_u8(w->weight, against));
-    const uint8x16_t takes = vuzp1q_u8(vreinterpretq_u8_u16(low), vreinterpretq_u8_u16(high));
-    w->kind = vbslq_u8(takes, k.kind, w->kind);
-    w->weight = vbslq_u8(takes, k.weight, w->weight);
-    w->marks = vbslq_u8(takes, k.marks, w->marks);
+    w->kind = vbslq_u8(takes, k->kind, w->kind);
+    w->weight = vbslq_u8(takes, k->weight, w->weight);
+    w->most = vbslq_u8(takes, k->most, w->most);
+}
+
+/* Let a class challenge the winner. It wins if weight f > winner's (256 - f), with f = 128 + lean:
+ * if both weights f > 256 winner's, and that over 256, rounded up, > winner's. Two classes have 256
+ * at most; 255 says the same of 256. A class that challenges itself may win: it changes nothing. */
+static inline void neon_challenge(struct neon_winner *w, const struct neon_winner *k,
+                                  struct neon_factors factors)
+{
+    const uint8x16_t are_natural =
+        vreinterpretq_u8_s8(vshrq_n_s8(vreinterpretq_s8_u8(vandq_u8(k->most, w->most)), 7));
+    const uint8x16_t leaning = vbslq_u8(vcgtq_u8(k->kind, w->kind), factors.above, factors.below);
+    const uint8x16_t f = vbslq_u8(are_natural, leaning, vdupq_n_u8(128));
+    const uint8x16_t both = vqaddq_u8(k->weight, w->weight);
+    const uint16x8_t low = vmull_u8(vget_low_u8(both), vget_low_u8(f));
+    const uint16x8_t up = vdupq_n_u16(255);
+    const uint8x16_t share = vaddhn_high_u16(vaddhn_u16(low, up), vmull_high_u8(both, f), up);
+    neon_take(w, k, vcgtq_u8(share, w->weight));
 }
 
 /* Weight of all cells of the class of the first: up to 255. */
@@ -344,39 +351,64 @@ static inline void neon_set_classes(const struct neon_map *map, const struct neo
     of[3].weight = neon_of_class(d, ad, a, bd, b, cd, c);
     for (size_t n = 0; n < 4; n++) {
         of[n].kind = kind[n];
-        of[n].marks = vqtbl1q_u8(map->marks, kind[n]);
+        of[n].most = vqtbl1q_u8(map->most, kind[n]);
     }
 }
 
-/* True if some class bends borders or has crowns. */
-static inline bool neon_needs_grown(const struct neon_winner of[4])
+/* True if some border is one of two natural classes, or a class has crowns. */
+static inline bool neon_needs_grown(const struct neon_map *map, const struct neon_winner of[4])
 {
-    const uint8x16_t marks =
-        vorrq_u8(vorrq_u8(of[0].marks, of[1].marks), vorrq_u8(of[2].marks, of[3].marks));
-    return neon_any(vandq_u8(marks, vdupq_n_u8(NATURAL | CROWNED)));
+    uint8x16_t most = of[0].most, least = vqtbl1q_u8(map->least, of[0].kind);
+    for (size_t n = 1; n < 4; n++) {
+        most = vmaxq_u8(most, of[n].most);
+        least = vminq_u8(least, vqtbl1q_u8(map->least, of[n].kind));
+    }
+    return neon_any(vcgtq_u8(most, least));
+}
+
+/* Of four classes, the first of most weight. */
+static inline uint8x16_t neon_contest_plain(const struct neon_winner of[4])
+{
+    uint8x16_t kind = of[0].kind, weight = of[0].weight;
+    for (size_t n = 1; n < 4; n++) {
+        kind = vbslq_u8(vcgtq_u8(of[n].weight, weight), of[n].kind, kind);
+        weight = vmaxq_u8(weight, of[n].weight);
+    }
+    return kind;
+}
+
+/* The same where the ground leans, and the crowns of the winners. */
+static inline uint8x16_t neon_contest_grown(const struct neon_map *map,
+                                            const struct neon_places *at,
+                                            const struct neon_winner of[4], int16x8_t crown_q16[2])
+{
+    const struct neon_grown grown =
+        map->is_stepped ? neon_grown_nearest(map, at) : neon_grown_between(map, at);
+    const uint8x16_t even = vdupq_n_u8(128), lean_q7 = vreinterpretq_u8_s8(grown.lean_q7);
+    const struct neon_factors factors = {vaddq_u8(even, lean_q7), vsubq_u8(even, lean_q7)};
+    struct neon_winner w = of[0];
+    for (size_t n = 1; n < 4; n++) {
+        neon_challenge(&w, &of[n], factors);
+    }
+    const int8x16_t is_crowned =
+        vreinterpretq_s8_u8(vtstq_u8(vqtbl1q_u8(map->marks, w.kind), vdupq_n_u8(CROWNED)));
+    crown_q16[0] = vandq_s16(grown.crown_q16[0], vmovl_s8(vget_low_s8(is_crowned)));
+    crown_q16[1] = vandq_s16(grown.crown_q16[1], vmovl_high_s8(is_crowned));
+    return w.kind;
 }
 
 /* Find the winners, and take the weights of all but their cells away. */
 static inline uint8x16_t neon_contest(const struct neon_map *map, const struct neon_places *at,
                                       struct neon_corners *c, int16x8_t crown_q16[2])
 {
-    struct neon_grown grown = {vdupq_n_s8(0), {vdupq_n_s16(0), vdupq_n_s16(0)}};
     struct neon_winner of[4];
     neon_set_classes(map, c, of);
-    if (neon_needs_grown(of)) {
-        grown = map->is_stepped ? neon_grown_nearest(map, at) : neon_grown_between(map, at);
-    }
-    struct neon_winner w = of[0];
-    neon_challenge(&w, of[1], grown.lean_q7);
-    neon_challenge(&w, of[2], grown.lean_q7);
-    neon_challenge(&w, of[3], grown.lean_q7);
-    const int8x16_t is_crowned = vreinterpretq_s8_u8(vtstq_u8(w.marks, vdupq_n_u8(CROWNED)));
-    crown_q16[0] = vandq_s16(grown.crown_q16[0], vmovl_s8(vget_low_s8(is_crowned)));
-    crown_q16[1] = vandq_s16(grown.crown_q16[1], vmovl_high_s8(is_crowned));
+    const uint8x16_t kind = neon_needs_grown(map, of) ? neon_contest_grown(map, at, of, crown_q16)
+                                                      : neon_contest_plain(of);
     for (size_t n = 0; n < 4; n++) {
-        c->weight[n] = vandq_u8(vceqq_u8(c->kind[n], w.kind), c->weight[n]);
+        c->weight[n] = vandq_u8(vceqq_u8(c->kind[n], kind), c->weight[n]);
     }
-    return w.kind;
+    return kind;
 }
 
 /* ---- means ---- */
@@ -519,49 +551,71 @@ static inline uint32x4x2_t neon_elevations(const uint32_t *scale, const neon_pai
                            neon_elevation(vld1q_u32(scale + 4), post_q16.val[1])}};
 }
 
+/* What a turn fetches: one pointer reaches all of it. */
+struct neon_scratch {
+    uint32_t post[PLACES], cell[PLACES]; /* offsets */
+    neon_pair south[PLACES], north[PLACES];
+};
+
 /* Store the elevations of the terrain, and find the four cells around each place. */
 static inline void neon_read(const struct neon_map *map, struct neon_turn turn,
                              struct neon_corners *c)
 {
     const struct neon_places *const at = turn.at;
-    uint32_t offset[2 * PLACES];
-    neon_pair south[PLACES], north[PLACES];
-    for (size_t h = 0; h < 4; h++) {
-        const uint32x4_t record = vld1q_u32(turn.cell + 4 * (h % 2) + (h < 2 ? 0 : turn.next));
-        vst1q_u32(offset + 4 * h, neon_offsets(record, at->north[h], at->east[h]));
-        vst1q_u32(offset + PLACES + 4 * h, neon_corner_offsets(record, neon_half_on(at->north[h]),
-                                                               neon_half_on(at->east[h])));
+    struct neon_scratch room, *scratch = &room;
+    uint16x8_t e[2], n[2], u[2], v[2];
+    __asm__("" : "+r"(scratch));
+    for (size_t h = 0; h < 2; h++) {
+        const uint32_t *const cell = turn.cell + h * turn.next;
+        const uint32x4x2_t record = {
+            {vshlq_n_u32(vld1q_u32(cell), 2), vshlq_n_u32(vld1q_u32(cell + 4), 2)}};
+        e[h] = neon_halves(at->east[2 * h], at->east[2 * h + 1]);
+        n[h] = neon_halves(at->north[2 * h], at->north[2 * h + 1]);
+        neon_store_offsets(scratch->post + LM_LANES * h, record, vshrq_n_u16(n[h], 10),
+                           vshrq_n_u16(e[h], 10));
+        u[h] = neon_half_on(e[h]);
+        v[h] = neon_half_on(n[h]);
+        neon_store_offsets(scratch->cell + LM_LANES * h, record, vshrq_n_u16(v[h], 9),
+                           vshrq_n_u16(u[h], 9));
+        u[h] = neon_from_middles(u[h]);
+        v[h] = neon_from_middles(v[h]);
     }
-    const uint16x8_t e[2] = {neon_halves(at->east[0], at->east[1]),
-                             neon_halves(at->east[2], at->east[3])};
-    const uint16x8_t n[2] = {neon_halves(at->north[0], at->north[1]),
-                             neon_halves(at->north[2], at->north[3])};
-    __asm__("" : "+m"(offset));
+    __asm__("" : "+m"(*scratch));
     for (size_t k = 0; k < PLACES; k += 4) {
-        neon_fetch(&map->posts, offset + k, south + k, north + k);
+        neon_fetch(&map->posts, scratch->post + k, scratch->south + k, scratch->north + k);
     }
     uint32_t *const further = turn.elevation + turn.next;
-    const uint32x4x2_t low = neon_elevations(turn.elevation, south, north, e[0], n[0]);
+    const uint32x4x2_t low =
+        neon_elevations(turn.elevation, scratch->south, scratch->north, e[0], n[0]);
     const uint32x4x2_t high =
-        neon_elevations(further, south + LM_LANES, north + LM_LANES, e[1], n[1]);
+        neon_elevations(further, scratch->south + LM_LANES, scratch->north + LM_LANES, e[1], n[1]);
     vst1q_u32(further, high.val[0]);
     vst1q_u32(further + 4, high.val[1]);
     vst1q_u32(turn.elevation, low.val[0]);
     vst1q_u32(turn.elevation + 4, low.val[1]);
     for (size_t k = 0; k < PLACES; k += 4) {
-        neon_fetch(&map->cells, offset + PLACES + k, south + k, north + k);
+        neon_fetch(&map->cells, scratch->cell + k, scratch->south + k, scratch->north + k);
     }
-    const uint16x8_t u[2] = {neon_from_middles(e[0]), neon_from_middles(e[1])};
-    const uint16x8_t v[2] = {neon_from_middles(n[0]), neon_from_middles(n[1])};
     neon_set_weights(c, u, v);
-    const uint16x8x4_t s[2] = {vld4q_u16((const uint16_t *)south),
-                               vld4q_u16((const uint16_t *)(south + LM_LANES))};
-    const uint16x8x4_t f[2] = {vld4q_u16((const uint16_t *)north),
-                               vld4q_u16((const uint16_t *)(north + LM_LANES))};
+    const uint16x8x4_t s[2] = {vld4q_u16((const uint16_t *)scratch->south),
+                               vld4q_u16((const uint16_t *)(scratch->south + LM_LANES))};
+    const uint16x8x4_t f[2] = {vld4q_u16((const uint16_t *)scratch->north),
+                               vld4q_u16((const uint16_t *)(scratch->north + LM_LANES))};
     neon_set_cells(c, 0, s[0].val[0], s[1].val[0]);
     neon_set_cells(c, 1, s[0].val[2], s[1].val[2]);
     neon_set_cells(c, 2, f[0].val[0], f[1].val[0]);
     neon_set_cells(c, 3, f[0].val[2], f[1].val[2]);
+}
+
+/* Where cells with weight are of other heights than the heaviest. All of them are of one class. */
+static inline uint8x16_t neon_heights_differ(const struct neon_corners *c, struct neon_cell best)
+{
+    uint8x16_t differs = vdupq_n_u8(0);
+    for (size_t n = 0; n < 4; n++) {
+        const uint8x16_t counts = vtstq_u8(c->weight[n], c->weight[n]);
+        differs = vorrq_u8(differs, vandq_u8(veorq_u8(c->low[n], best.low), counts));
+    }
+    return differs;
 }
 
 /* Blend the cells of a turn. */
@@ -588,19 +642,12 @@ static inline void neon_blend(const struct neon_map *map, struct neon_turn turn)
     neon_store_cells(&c, turn, best, weight, share);
 
     /* Most ground is of one height. */
-    if (!neon_any(vorrq_u8(vandq_u8(differences, vdupq_n_u8(LM_K_CODES - 1)),
-                           vreinterpretq_u8_s16(vorrq_s16(crown_q16[0], crown_q16[1]))))) {
-        return;
-    }
-    uint8x16_t differs = vdupq_n_u8(0);
-    for (size_t n = 0; n < 4; n++) {
-        const uint8x16_t counts = vtstq_u8(c.weight[n], c.weight[n]);
-        differs = vorrq_u8(differs, vandq_u8(veorq_u8(c.low[n], best.low), counts));
-    }
     const uint8x16_t is_flat = vtstq_u8(vqtbl1q_u8(map->marks, kind), vdupq_n_u8(FLAT));
-    const bool do_differ = neon_any(vbicq_u8(differs, is_flat));
-    if (do_differ || neon_any(vreinterpretq_u8_s16(vorrq_s16(crown_q16[0], crown_q16[1])))) {
-        neon_add_heights(map, &c, turn, best.low, vbicq_u8(share, is_flat), do_differ, crown_q16);
+    const uint8x16_t differs = vbicq_u8(neon_heights_differ(&c, best), is_flat);
+    const uint8x16_t crown = vreinterpretq_u8_s16(vorrq_s16(crown_q16[0], crown_q16[1]));
+    if (neon_any(vorrq_u8(differs, crown))) {
+        neon_add_heights(map, &c, turn, best.low, vbicq_u8(share, is_flat), neon_any(differs),
+                         crown_q16);
     }
 }
 

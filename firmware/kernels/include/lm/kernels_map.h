@@ -75,7 +75,7 @@ static inline struct lm_ground lm_k_tile_sample(const struct lm_tile_point *poin
  * tile that cell k lies in, also for the cells that fill the last group of 8. After: the cell as in
  * the record, and the elevation of the terrain in metres * 16384.
  *
- * `points` as there, of tiles that have passed lm_tile_check. Cost: 11 a cell. */
+ * `points` as there, of tiles that have passed lm_tile_check. Cost: 10 a cell. */
 void lm_k_tile_read(const struct lm_tile_point *points, const struct lm_tile_coords *places,
                     uint32_t first, uint32_t groups, uint32_t *cell, int32_t *elevation_m_q14);
 
@@ -112,8 +112,8 @@ struct lm_k_blend {
  *   steps of 1/64 dB. Reflectivities of one class must be within 63.5 dB.
  * - elevation_m_q14[k]: of the terrain, and what the cell's height lacks to that of the blend.
  *
- * Points beside the own ones of a tile are read, too. Cost: 27 a cell where all that is around is
- * of one class and height, up to 51 elsewhere, and 6 more if it is not stepped. */
+ * Points beside the own ones of a tile are read, too. Cost: 26 a cell where all that is around is
+ * of one class, up to 48 elsewhere, and 7 more if it is not stepped. */
 void lm_k_tile_blend(const struct lm_k_blend *map, const struct lm_tile_coords *places,
                      uint32_t first, uint32_t groups, uint32_t *cell, int32_t *elevation_m_q14);
 
