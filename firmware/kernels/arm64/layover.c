@@ -31,6 +31,13 @@ struct laid {
     int32_t filled;
 };
 
+/* Sixteen cells, of which `number` is the first. */
+struct group {
+    const uint32_t *cell;
+    const int32_t *elevation_m_q14, *level_db_q8;
+    int32_t number;
+};
+
 /* Part of a group, as in c/layover.c. */
 struct pass {
     int32_t first;
@@ -57,22 +64,17 @@ static inline void store_16(uint16_t *to, uint16x8x2_t x)
     vst1q_u16(to + 8, x.val[1]);
 }
 
-/* fx_db_q8_sum_vec of sixteen. Below line 32 a place counts from step 0, from there on from step
- * 256; the last lines have no fall. */
+/* fx_db_q8_sum_vec of sixteen. */
 static inline uint16x8x2_t sum_16(uint16x8x2_t a, uint16x8x2_t b)
 {
-    const uint16x8_t apart[2] = {vabdq_u16(a.val[0], b.val[0]), vabdq_u16(a.val[1], b.val[1])};
-    const uint8x16_t place = vshrn_high_n_u16(vshrn_n_u16(apart[0], 4), apart[1], 4);
-    const uint8x16_t line =
-        vminq_u8(vqshrn_high_n_u16(vqshrn_n_u16(apart[0], 7), apart[1], 7), vdupq_n_u8(63));
-    const uint8x16_t low = look_up(fx_table_db_sum_lines[0], line, line);
-    const uint8x16_t high = look_up(fx_table_db_sum_lines[1], low, line);
-    const uint8x16_t fall = look_up(fx_table_db_sum_lines[2], high, line);
-    const uint16x8_t more_q13[2] = {
-        vmlsl_u8(vreinterpretq_u16_u8(vzip1q_u8(low, high)), vget_low_u8(fall), vget_low_u8(place)),
-        vmlsl_high_u8(vreinterpretq_u16_u8(vzip2q_u8(low, high)), fall, place)};
-    return (uint16x8x2_t){{vsraq_n_u16(vmaxq_u16(a.val[0], b.val[0]), more_q13[0], 5),
-                           vsraq_n_u16(vmaxq_u16(a.val[1], b.val[1]), more_q13[1], 5)}};
+    const struct neon_db_sum at =
+        neon_db_sum_of_16(vabdq_u16(a.val[0], b.val[0]), vabdq_u16(a.val[1], b.val[1]));
+    const uint8x16_t low = look_up(fx_table_db_sum_lines[0], at.line, at.line);
+    const uint8x16_t high = look_up(fx_table_db_sum_lines[1], low, at.line);
+    const uint8x16_t fall = look_up(fx_table_db_sum_lines[2], high, at.line);
+    const uint16x8x2_t more_q13 = neon_db_sum_more_q13(low, high, fall, at.place);
+    return (uint16x8x2_t){{vsraq_n_u16(vmaxq_u16(a.val[0], b.val[0]), more_q13.val[0], 5),
+                           vsraq_n_u16(vmaxq_u16(a.val[1], b.val[1]), more_q13.val[1], 5)}};
 }
 
 /* Saturated to 16 bits. */
@@ -84,17 +86,14 @@ static inline int16x8x2_t narrow_16(int32x4x4_t x)
 
 /* How far the cells of a group are displaced away from the radar, in sixteenths of a cell. */
 static inline int16x8x2_t displace(const struct tables *t, const struct lm_k_layover *l,
-                                   uint32_t group, int16x8x2_t level_db_q8)
+                                   const struct group *g, int16x8x2_t level_db_q8)
 {
     const int32x4_t reference = vdupq_n_s32(l->reference_m_q14);
-    const uint32_t *cell = l->cell + group;
-    const int32_t *elevation_m_q14 = l->elevation_m_q14 + group;
-    const uint32x4x4_t cells = {
-        {vld1q_u32(cell), vld1q_u32(cell + 4), vld1q_u32(cell + 8), vld1q_u32(cell + 12)}};
-    const uint8x16_t code = vandq_u8(neon_lower_bytes(neon_lower_halves(cells)), vdupq_n_u8(15));
+    const uint8x16_t code =
+        vandq_u8(neon_lower_bytes(neon_lower_halves(vld1q_u32_x4(g->cell))), vdupq_n_u8(15));
     const uint16x8x2_t height = neon_words_of_16(t->height, code);
     const int16x8_t dark = vdupq_n_s16(LM_LEVEL_SHADOW / 2);
-    int32x4x4_t terrain = neon_load_8_and_8(elevation_m_q14, elevation_m_q14 + 8);
+    int32x4x4_t terrain = neon_load_8_and_8(g->elevation_m_q14, g->elevation_m_q14 + 8);
     for (size_t k = 0; k < 4; k++) {
         terrain.val[k] = vqrdmulhq_n_s32(vsubq_s32(reference, terrain.val[k]), l->sixteenths_q31);
     }
@@ -106,18 +105,15 @@ static inline int16x8x2_t displace(const struct tables *t, const struct lm_k_lay
     return away;
 }
 
-/* Take the cells out of a group that are displaced least, where some are; *is_last if there are no
- * others. False if none is left. */
-static inline bool take(struct pass *p, uint32_t group, int16x8x2_t *away_16ths, bool *is_last)
+/* Take the cells out of a group that are displaced least, `least` sixteenths, where some are;
+ * *is_last if there are no others. */
+static inline void take(struct pass *p, int32_t group, int32_t least, int16x8x2_t *away_16ths,
+                        bool *is_last)
 {
-    const int32_t least = vminvq_s16(vminq_s16(away_16ths->val[0], away_16ths->val[1]));
-    if (least == NOWHERE) {
-        return false;
-    }
     const int16x8_t base = vdupq_n_s16((int16_t)(least & ~15));
     const int16x8_t beyond[2] = {vqsubq_s16(away_16ths->val[0], base),
                                  vqsubq_s16(away_16ths->val[1], base)};
-    p->first = (int32_t)group + (least >> 4);
+    p->first = group + (least >> 4);
     p->place_16ths = vqmovun_high_s16(vqmovun_s16(beyond[0]), beyond[1]);
     p->most_16ths = vmaxvq_u8(p->place_16ths);
     *is_last = p->most_16ths <= REACH_16THS;
@@ -130,7 +126,6 @@ static inline bool take(struct pass *p, uint32_t group, int16x8x2_t *away_16ths,
                 vbslq_s16(vcleq_s16(beyond[n], reach), nowhere, away_16ths->val[n]);
         }
     }
-    return true;
 }
 
 /* Shares of powers. `below` is what the levels lack to the highest one, 65535. */
@@ -150,6 +145,14 @@ static inline uint16x8x2_t from_before(uint16x8_t before, uint16x8x2_t x, const 
     return (uint16x8x2_t){{vextq_u16(before, x.val[0], 6), vextq_u16(x.val[0], x.val[1], 6)}};
 }
 
+/* The number, of which the compiler must not see that others use it: it would work out for each
+ * pass what few need. */
+static inline int32_t apart(int32_t x)
+{
+    __asm__("" : "+r"(x));
+    return x;
+}
+
 /* Put an entry where nothing is yet, or add it to what is there. */
 static inline void put(uint16_t *to, uint32_t level, bool is_new)
 {
@@ -165,21 +168,23 @@ static inline void put_16(uint16_t *to, uint16x8x2_t sum, bool is_new)
 static inline void add_two(struct laid *laid, const struct tables *t, const struct pass *p,
                            uint16x8x2_t below)
 {
-    uint16_t *const to = laid->level + p->first;
-    const bool is_new = p->first + 1 >= laid->filled;
+    const int32_t first = apart(p->first);
+    uint16_t *const to = laid->level + first;
+    const bool is_new = first + 1 >= laid->filled;
     const uint16x8_t before = vdupq_n_u16(is_new ? to[0] : 0);
     const uint16x8x2_t next = share(t, below, vabdq_u8(p->place_16ths, vdupq_n_u8(16)));
     const uint16x8x2_t own = share(t, below, p->place_16ths);
     put_16(to, sum_16(own, from_before(before, next, 1)), is_new);
     put(to + GROUP, vgetq_lane_u16(next.val[1], 7), is_new);
-    laid->filled = fx_max_i32(laid->filled, p->first + 1 + GROUP);
+    laid->filled = fx_max_i32(laid->filled, first + 1 + GROUP);
 }
 
 static inline void add_three(struct laid *laid, const struct tables *t, const struct pass *p,
                              uint16x8x2_t below)
 {
-    uint16_t *const to = laid->level + p->first;
-    const bool is_new = p->first + 2 >= laid->filled;
+    const int32_t first = apart(p->first);
+    uint16_t *const to = laid->level + first;
+    const bool is_new = first + 2 >= laid->filled;
     const uint16x8_t before = vdupq_n_u16(is_new ? to[0] : 0);
     const uint16x8_t before_second = vsetq_lane_u16(is_new ? to[1] : 0, vdupq_n_u16(0), 7);
     const uint16x8x2_t next = share(t, below, vabdq_u8(p->place_16ths, vdupq_n_u8(16)));
@@ -192,7 +197,7 @@ static inline void add_three(struct laid *laid, const struct tables *t, const st
                                    vgetq_lane_u16(second.val[1], 6)),
         is_new);
     put(to + GROUP + 1, vgetq_lane_u16(second.val[1], 7), is_new);
-    laid->filled = fx_max_i32(laid->filled, p->first + 2 + GROUP);
+    laid->filled = fx_max_i32(laid->filled, first + 2 + GROUP);
 }
 
 static inline void lay(struct laid *laid, const struct tables *t, const struct pass *p,
@@ -215,25 +220,44 @@ static inline struct tables load_tables(const struct lm_k_layover *line)
         .height = {vld1q_u8(line->height_sixteenths[0]), vld1q_u8(line->height_sixteenths[1])}};
 }
 
-/* Lay a group of sixteen cells over the line. */
-static inline void lay_group(struct laid *laid, const struct tables *t,
-                             const struct lm_k_layover *line, uint32_t group)
+static inline int32_t least_of(int16x8x2_t away_16ths)
 {
-    const int32_t *const level = line->level_db_q8 + group;
+    return vminvq_s16(vminq_s16(away_16ths.val[0], away_16ths.val[1]));
+}
+
+/* Lay a group of sixteen cells over the line, of that many cells. Those without power go along with
+ * the first pass: they have no share to give, and ask for no pass of their own. */
+static inline void lay_group(struct laid *laid, const struct tables *t,
+                             const struct lm_k_layover *line, const struct group *g,
+                             uint32_t displayed)
+{
     const int16x8_t most = vdupq_n_s16(LM_K_LAYOVER_MOST_DB_Q8);
-    int16x8x2_t level_db_q8 = narrow_16(neon_load_8_and_8(level, level + 8));
-    int16x8x2_t away_16ths = displace(t, line, group, level_db_q8);
+    int16x8x2_t level_db_q8 = narrow_16(neon_load_8_and_8(g->level_db_q8, g->level_db_q8 + 8));
+    int16x8x2_t away_16ths = displace(t, line, g, level_db_q8);
     uint16x8x2_t below;
     struct pass p;
+    int32_t least = least_of(away_16ths);
+    if (least == NOWHERE) {
+        return;
+    }
     bool is_last = false;
     for (size_t n = 0; n < 2; n++) {
+        const uint16x8_t is_nowhere = vceqq_s16(away_16ths.val[n], vdupq_n_s16(NOWHERE));
         level_db_q8.val[n] = vminq_s16(level_db_q8.val[n], most);
         below.val[n] = veorq_u16(vreinterpretq_u16_s16(level_db_q8.val[n]), vdupq_n_u16(INT16_MAX));
+        below.val[n] = vorrq_u16(below.val[n], is_nowhere);
+        away_16ths.val[n] = vbslq_s16(is_nowhere, vdupq_n_s16((int16_t)least), away_16ths.val[n]);
     }
-    while (!is_last && take(&p, group, &away_16ths, &is_last)) {
-        if (p.first >= -LM_K_LAYOVER_MARGIN && p.first < (int32_t)line->cells) {
+    while (!is_last) {
+        take(&p, g->number, least, &away_16ths, &is_last);
+        if ((uint32_t)(p.first + LM_K_LAYOVER_MARGIN) < displayed) {
             lay(laid, t, &p, below);
         }
+        if (is_last) {
+            return;
+        }
+        least = least_of(away_16ths);
+        is_last = least == NOWHERE;
     }
 }
 
@@ -264,8 +288,12 @@ void lm_k_layover(const struct lm_k_layover *lent, int32_t *laid_db_q8)
     for (int32_t i = 0; i < margin + cells + margin; i += GROUP) {
         store_16(word + i, dark);
     }
-    for (uint32_t group = 0; group < line->cells; group += GROUP) {
-        lay_group(&laid, &tables, line, group);
+    struct group g = {line->cell, line->elevation_m_q14, line->level_db_q8, 0};
+    for (; g.number < cells; g.number += GROUP) {
+        lay_group(&laid, &tables, line, &g, line->cells + LM_K_LAYOVER_MARGIN);
+        g.cell += GROUP;
+        g.elevation_m_q14 += GROUP;
+        g.level_db_q8 += GROUP;
     }
     widen(word + margin, laid_db_q8 + margin, cells);
 }

@@ -129,16 +129,23 @@ static inline struct neon_db_sum neon_db_sum_of(int32x4x4_t a_q8, int32x4x4_t b_
         vuzp1q_u8(vreinterpretq_u8_u16(step[0]), vreinterpretq_u8_u16(step[1]))};
 }
 
+/* What the table says, from bytes of its rows: by how much sums are above the higher levels. */
+static inline uint16x8x2_t neon_db_sum_more_q13(uint8x16_t low, uint8x16_t high, uint8x16_t fall,
+                                                uint8x16_t place)
+{
+    return (uint16x8x2_t){{vmlsl_u8(vreinterpretq_u16_u8(vzip1q_u8(low, high)), vget_low_u8(fall),
+                                    vget_low_u8(place)),
+                           vmlsl_high_u8(vreinterpretq_u16_u8(vzip2q_u8(low, high)), fall, place)}};
+}
+
 /* The larger ones, and what the table says that they are raised by. */
 static inline int32x4x4_t neon_db_sum_raise(uint8x16_t low, uint8x16_t high, uint8x16_t fall,
                                             uint8x16_t place, int32x4x4_t a_q8, int32x4x4_t b_q8)
 {
-    const uint16x8_t more_q13[2] = {
-        vmlsl_u8(vreinterpretq_u16_u8(vzip1q_u8(low, high)), vget_low_u8(fall), vget_low_u8(place)),
-        vmlsl_high_u8(vreinterpretq_u16_u8(vzip2q_u8(low, high)), fall, place)};
+    const uint16x8x2_t more_q13 = neon_db_sum_more_q13(low, high, fall, place);
     int32x4x4_t sum;
     for (size_t n = 0; n < 2; n++) {
-        const int16x8_t more_q8 = vreinterpretq_s16_u16(vshrq_n_u16(more_q13[n], 5));
+        const int16x8_t more_q8 = vreinterpretq_s16_u16(vshrq_n_u16(more_q13.val[n], 5));
         const int32x4_t most[2] = {vmaxq_s32(a_q8.val[2 * n], b_q8.val[2 * n]),
                                    vmaxq_s32(a_q8.val[2 * n + 1], b_q8.val[2 * n + 1])};
         sum.val[2 * n] = vaddw_s16(most[0], vget_low_s16(more_q8));
@@ -156,6 +163,15 @@ static inline int32x4x4_t neon_db_q8_sum(uint8x16x4_t lows, uint8x16x4_t highs, 
     const struct neon_db_sum at = neon_db_sum_of(a_q8, b_q8);
     return neon_db_sum_raise(vqtbl4q_u8(lows, at.line), vqtbl4q_u8(highs, at.line),
                              vqtbl4q_u8(falls, at.line), at.place, a_q8, b_q8);
+}
+
+/* The same of levels of 16 bits, whose distances are given. Below line 32 a place counts from step
+ * 0, from there on from step 256; the last lines have no fall. */
+static inline struct neon_db_sum neon_db_sum_of_16(uint16x8_t apart_q8, uint16x8_t further_q8)
+{
+    const uint8x16_t line = vqshrn_high_n_u16(vqshrn_n_u16(apart_q8, 7), further_q8, 7);
+    return (struct neon_db_sum){vminq_u8(line, vdupq_n_u8(63)),
+                                vshrn_high_n_u16(vshrn_n_u16(apart_q8, 4), further_q8, 4)};
 }
 
 /* Eight numbers, and eight more. */

@@ -108,9 +108,10 @@ void lm_grain_run(const struct lm_grain_curve *curve, struct lm_grain_place plac
                   int32_t *level_db_q8, uint32_t cells);
 
 /* Add a floor to the power of each cell, and multiply the sum by the speckle:
- * 10 log10(10^(level/10) + 10^(floor/10)) plus that of the cell's number. Levels and floor are
- * within 2^30 of 0. The worst error of the sum is 0.018 dB. The two arrays are apart, and have room
- * for whole groups of 16 cells. Cost: docs/benchmarks.md. */
+ * 10 log10(10^(level/10) + 10^(floor/10)) plus that of the cell's number. Levels, floor and sum are
+ * held within 16 bits, 128 dB of 0; a level more than 32 dB below the floor changes nothing in any
+ * case. The worst error of the sum is 0.018 dB. The two arrays are apart, and have room for whole
+ * groups of 16 cells. Cost: docs/benchmarks.md. */
 void lm_grain_floor_run(const struct lm_grain_curve *curve, struct lm_grain_place place,
                         int32_t floor_db_q8, const int32_t *level_db_q8, int32_t *speckled_db_q8,
                         uint32_t cells);

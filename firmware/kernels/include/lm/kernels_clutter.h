@@ -115,7 +115,8 @@ void lm_k_grain_add(const struct lm_k_curve *curve, const int8_t *grain_q5, int3
                     uint32_t cells);
 
 /* Power of each level and the floor together, as a level, and the speckle of its number added to
- * it. Levels and floor within 2^30 of 0; the sum's worst error is 0.018 dB. Cost: 4 a cell. */
+ * it. Levels, floor and their sum are held within 16 bits, or 128 dB of 0: what is more than 32 dB
+ * below a floor changes nothing. The sum's worst error is 0.018 dB. Cost: 3 a cell. */
 void lm_k_grain_floor(const struct lm_k_curve *curve, const int8_t *grain_q5, int32_t floor_db_q8,
                       const int32_t *level_db_q8, int32_t *noisy_db_q8, uint32_t cells);
 

@@ -180,15 +180,15 @@ TEST(every_cell_gains_the_speckle_of_its_place)
         int32_t level[48], over_nothing[48], none[48];
         lm_grain_curve_set(&curve, 256 + row * 50);
         for (int i = 0; i < 48; i++) {
-            level[i] = none[i] = 1000 * i - 0x8000;
+            level[i] = none[i] = 1000 * i - 80 * 256;
         }
         lm_grain_run(&curve, place, level, 48);
         lm_grain_floor_run(&curve, place, -1000 * 256, none, over_nothing, 48);
         for (uint32_t i = 0; i < 48; i++) {
             const struct lm_grain_place at = {place.row, place.column + i};
             assert_int_equal(lm_grain_at(at), ref_grain(at.row, at.column));
-            assert_int_equal(level[i],
-                             1000 * (int32_t)i - 0x8000 + lm_grain_db_q8(&curve, lm_grain_at(at)));
+            assert_int_equal(level[i], 1000 * (int32_t)i - 80 * 256 +
+                                           lm_grain_db_q8(&curve, lm_grain_at(at)));
             assert_in_range(over_nothing[i] - level[i], 0, 1);
         }
     }
@@ -230,8 +230,11 @@ TEST(the_floor_adds_as_power_to_every_level)
         const int32_t floor_q8 = (int32_t)hs_rng_below(&rng, 40000) - 30000;
         const int32_t level_q8 = (int32_t)hs_rng_below(&rng, 60000) - 40000;
         const int32_t sum_q8 = over_floor_q8(floor_q8, level_q8);
-        const double expected = 10 * log10(pow(10, level_q8 / 2560.0) + pow(10, floor_q8 / 2560.0));
+        const double held_q8 = fmax(level_q8, INT16_MIN);
+        const double expected = 10 * log10(pow(10, held_q8 / 2560) + pow(10, floor_q8 / 2560.0));
         assert_true(fabs(sum_q8 / 256.0 - expected) < 0.018);
     }
     assert_in_range(over_floor_q8(-46 * 256, LM_LEVEL_SHADOW) + 46 * 256, 0, 1);
+    assert_int_equal(over_floor_q8(0, 1 << 20), INT16_MAX);
+    assert_int_equal(over_floor_q8(1 << 20, 0), INT16_MAX);
 }
