@@ -331,21 +331,23 @@ static inline bool narrow(struct interval *d, int32_t at_q16, int32_t step_q16)
     return d->from_q8 <= d->to_q8;
 }
 
-/* Draw a roof into cells first..end - 1. `v_q16` is v of the first of them; inside it is at most 1,
- * and a step at most 2, both in Q16. */
+/* Draw a roof into cells first..end - 1, of which there is one at least. `v_q16` is v of the first
+ * of them; inside it is at most 1, and a step at most 2, both in Q16. */
 static void draw_roof(const struct lm_detail_shape *shape, int32_t first, int32_t end,
                       int32_t v_q16, struct lm_scan_line *ground)
 {
     const uint32_t top = (uint32_t)shape->gamma_code << 8 | (uint32_t)shape->class_number << 4;
     const uint32_t codes = shape->height_codes;
     const int32_t elevation_m_q14 = shape->elevation_m_q14, v_cell_q16 = shape->v_cell_q16;
-    const bool is_flat = codes == ((codes << 4) | (codes & 15));
     int32_t *elevation = ground->elevation_m_q14 + first;
     uint32_t *cell = ground->cell + first;
     const uint32_t *const behind = ground->cell + end;
-    while (is_flat && cell < behind) {
-        *elevation++ = elevation_m_q14;
-        *cell++ = top | (codes & 15);
+    if (codes == ((codes << 4) | (codes & 15))) {
+        do {
+            *elevation++ = elevation_m_q14;
+            *cell++ = top | (codes & 15);
+        } while (cell < behind);
+        return;
     }
     for (; cell < behind; v_q16 += v_cell_q16) {
         const uint32_t eighth = fx_min_u32(fx_abs_u32(v_q16) >> 13, 7);
@@ -442,45 +444,57 @@ static void uncover_tile(const struct lm_detail_patch *p, struct tile_place plac
     }
 }
 
-/* First cell behind k that lies in another tile than k, up to `end`, which does. */
-static uint32_t end_of_tile(const struct lm_detail_patch *p, const struct lm_ground_path *path,
-                            uint32_t k, uint32_t end)
+/* Cells from one on, along which a coordinate stays within its tile if it goes on as it does there,
+ * straight. It is modulo 2^64; a tile is 2^side_log2 wide. */
+static inline uint64_t cells_to_border(uint64_t at, uint64_t step, uint32_t side_log2)
 {
-    const struct tile_place place = tile_place(p, path, k);
-    uint32_t inside = k;
-    while (end - inside > 1) {
-        const uint32_t middle = (inside + end) / 2;
-        if (are_same(tile_place(p, path, middle), place)) {
-            inside = middle;
-        } else {
-            end = middle;
-        }
-    }
-    return end;
+    const uint64_t round = ((uint64_t)1 << side_log2) - 1;
+    const bool grows = step >> 63 == 0;
+    const uint64_t room = (grows ? ~at : at) & round, way = grows ? step : 0 - step;
+    return way != 0 ? room / way : round;
 }
 
-enum { STRIDE = 64 };
+/* First cell behind k that should lie in another tile: it does, but for what the line bends. At
+ * most `cells`. */
+static inline uint32_t likely_end(const struct lm_detail_patch *p,
+                                  const struct lm_ground_path *path, uint32_t k, uint32_t cells)
+{
+    const uint64_t pairs = (uint64_t)k * (k - 1) / 2;
+    const uint64_t from_pole = path->latitude + ((uint64_t)FX_BAM_90 << 32) +
+                               k * path->latitude_step + pairs * path->latitude_bend;
+    const uint64_t longitude =
+        path->longitude + k * path->longitude_step + pairs * path->longitude_bend;
+    const uint32_t zone = lm_db_zone((fx_bam_t)(from_pole >> 32) - FX_BAM_90);
+    const uint64_t along = cells_to_border(from_pole, path->latitude_step + k * path->latitude_bend,
+                                           p->side_log2 + 32u);
+    const uint64_t across = cells_to_border(
+        longitude, path->longitude_step + k * path->longitude_bend, p->side_log2 + 32u + zone);
+    const uint64_t inside = along < across ? along : across;
+    return inside < cells - k - 1 ? k + 1 + (uint32_t)inside : cells;
+}
 
-/* Replace the structures of the map by the ground under them, where the tile has detail. A line is
- * all but straight, and a tile has no hollows: between two cells of a tile all are in it. */
+/* Replace the structures of the map by the ground under them, where the tile has detail. A tile has
+ * no hollows, and a line is all but straight: where it leaves a tile is guessed, and looked for
+ * from there. */
 static void uncover(const struct lm_detail_patch *p, const struct lm_ground_path *path,
                     uint32_t *cell, uint32_t cells)
 {
     struct tile_place place = tile_place(p, path, 0);
-    uint32_t first = 0;
-    for (uint32_t k = 0; k < cells;) {
-        const uint32_t next = fx_min_u32(k + STRIDE, cells);
-        const struct tile_place there = tile_place(p, path, next);
-        if (are_same(there, place)) {
-            k = next;
-            continue;
+    for (uint32_t first = 0, end = 0; first < cells; first = end) {
+        end = likely_end(p, path, first, cells);
+        struct tile_place behind = tile_place(p, path, end), before = tile_place(p, path, end - 1);
+        while (end - 1 > first && !are_same(before, place)) {
+            end--;
+            behind = before;
+            before = tile_place(p, path, end - 1);
         }
-        k = end_of_tile(p, path, k, next);
-        uncover_tile(p, place, cell + first, k - first);
-        first = k;
-        place = tile_place(p, path, k);
+        while (end < cells && are_same(behind, place)) {
+            end++;
+            behind = tile_place(p, path, end);
+        }
+        uncover_tile(p, place, cell + first, end - first);
+        place = behind;
     }
-    uncover_tile(p, place, cell + first, cells - first);
 }
 
 void lm_detail_patch_draw(const struct lm_detail_patch *p, uint32_t line,
@@ -493,8 +507,10 @@ void lm_detail_patch_draw(const struct lm_detail_patch *p, uint32_t line,
     const uint32_t block = line / LM_DETAIL_BLOCK_LINES;
     uint32_t drawn = 0;
     uncover(p, path, ground->cell, cells);
-    for (uint32_t n = p->first[block]; n < p->first[block + 1]; n++) {
-        const struct lm_detail_shape *shape = &p->shape[p->entry[n]];
+    const uint16_t *const end = p->entry + p->first[block + 1];
+    for (const uint16_t *entry = p->entry + p->first[block]; entry < end; entry++) {
+        const struct lm_detail_shape *shape = &p->shape[*entry];
+        __asm__("" : "+r"(shape)); /* the compiler would work it out for each of its fields */
         if (line >= shape->first_line && line < shape->end_line && drawn < LM_DETAIL_CELLS_A_LINE) {
             drawn += draw_shape(shape, line, cells, ground);
         }
