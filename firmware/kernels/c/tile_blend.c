@@ -5,6 +5,8 @@
 #include "lm/kernels_map.h"
 #include "lm/lanes.h"
 
+#define ALWAYS_INLINE __attribute__((always_inline))
+
 /* 2^13 over a weight of 4 i + 2, at most 255: i is the weight of a class, of 255, in steps of 4.
  * The vectors of arm64/ look up the same. */
 static const int32_t share_of_weight[64] = {
@@ -85,8 +87,8 @@ static inline int32_t nearest_texel(const struct lm_k_blend *map, uint32_t place
 static inline struct grown grown_nearest(const struct lm_k_blend *map, uint32_t north,
                                          uint32_t east)
 {
-    const uint32_t texel =
-        map->grown[nearest_texel(map, north) * LM_K_GROWN_STRIDE + nearest_texel(map, east)];
+    const int32_t at = nearest_texel(map, north) * LM_K_GROWN_STRIDE + nearest_texel(map, east);
+    const uint32_t texel = fx_load_u32(map->grown + at); /* and its neighbour: words gather */
     return (struct grown){((int32_t)(texel << 24) >> 24) * 256,
                           (int32_t)(texel & 0xFF00) - 128 * 256};
 }
@@ -114,15 +116,17 @@ static inline struct grown grown_between(const struct lm_k_blend *map, uint32_t 
                           (int32_t)(at_south * (16 - v) + at_north * v) - 128 * 256};
 }
 
-static inline struct grown grown_at(const struct lm_k_blend *map, uint32_t north, uint32_t east)
+static inline struct grown grown_at(const struct lm_k_blend *map, bool is_stepped, uint32_t north,
+                                    uint32_t east)
 {
-    return map->is_stepped ? grown_nearest(map, north, east) : grown_between(map, north, east);
+    return is_stepped ? grown_nearest(map, north, east) : grown_between(map, north, east);
 }
 
-static inline __attribute__((always_inline)) struct lm_ground blend(const struct lm_k_blend *map,
-                                                                    const struct heights *heights,
-                                                                    uint32_t record, int32_t scale,
-                                                                    uint32_t north, uint32_t east)
+/* `is_stepped` is the map's, as a constant. */
+static inline ALWAYS_INLINE struct lm_ground blend(const struct lm_k_blend *map,
+                                                   const struct heights *heights, bool is_stepped,
+                                                   uint32_t record, int32_t scale, uint32_t north,
+                                                   uint32_t east)
 {
     /* Half a cell to the south-west lies the cell whose middle is next. Weights are 1/128. */
     const uint32_t north_q25 = (north >> 1) + (1u << 24), east_q25 = (east >> 1) + (1u << 24);
@@ -138,7 +142,7 @@ static inline __attribute__((always_inline)) struct lm_ground blend(const struct
     const struct corner c = corner_of(fx_load_u32(p + at + LM_TILE_POINTS), of_c);
     const struct corner d = corner_of(fx_load_u32(p + at + LM_TILE_POINTS + 1), of_d);
 
-    const struct grown grown = grown_at(map, north, east);
+    const struct grown grown = grown_at(map, is_stepped, north, east);
     const int32_t lean_q7 = (grown.bend_q8 * LM_K_LEAN_OF_BEND_Q7 + (1 << 14)) >> 15;
     struct winner w = {a.kind, weight_of_class(a, b, c, d)};
     w = challenge(w, b.kind, weight_of_class(b, a, c, d), lean_q7, map->natural);
@@ -182,21 +186,37 @@ static inline __attribute__((always_inline)) struct lm_ground blend(const struct
                               g.elevation_m_q14 + higher_m_q14 + crown_m_q14};
 }
 
-/* Whole groups: a vector of cells has no rest. No store touches the points: it may gather. */
+/* Cells k to end - 1. A loop that asked whether it is stepped would make no vectors. No store
+ * touches the points: it may gather. */
+static inline ALWAYS_INLINE void blend_cells(const struct lm_k_blend *map,
+                                             const struct heights *heights, bool is_stepped,
+                                             const struct lm_tile_coords *p, uint32_t k,
+                                             uint32_t end, uint32_t *cell, int32_t *elevation_m_q14)
+{
+    for (; k < end; k++) {
+        const uint32_t north = lm_quadratic_at(&p->north, k), east = lm_quadratic_at(&p->east, k);
+        const struct lm_ground g =
+            blend(map, heights, is_stepped, cell[k], elevation_m_q14[k], north, east);
+        cell[k] = g.cell;
+        elevation_m_q14[k] = g.elevation_m_q14;
+    }
+}
+
+/* Whole groups: a vector of cells has no rest. */
 void lm_k_tile_blend(const struct lm_k_blend *map, const struct lm_tile_coords *places,
                      uint32_t first, uint32_t groups, uint32_t *restrict cell,
                      int32_t *restrict elevation_m_q14)
 {
     const struct lm_tile_coords p = *places;
     const struct lm_k_blend m = *map;
+    const uint32_t end = first + groups * LM_LANES;
     struct heights heights;
     for (int i = 0; i < LM_K_CODES; i++) {
         heights.dm[i] = m.height_dm_of_code[i];
     }
-    for (uint32_t k = first; k < first + groups * LM_LANES; k++) {
-        const uint32_t north = lm_quadratic_at(&p.north, k), east = lm_quadratic_at(&p.east, k);
-        const struct lm_ground g = blend(&m, &heights, cell[k], elevation_m_q14[k], north, east);
-        cell[k] = g.cell;
-        elevation_m_q14[k] = g.elevation_m_q14;
+    if (m.is_stepped) {
+        blend_cells(&m, &heights, true, &p, first, end, cell, elevation_m_q14);
+    } else {
+        blend_cells(&m, &heights, false, &p, first, end, cell, elevation_m_q14);
     }
 }
