@@ -159,6 +159,158 @@ TEST(polarisations_agree_after_odd_reflections_and_oppose_after_even_ones)
     assert_near(turn_between(&r), pi, 0.1); /* the wall alone has a side lobe, an odd one */
 }
 
+/* ---- tubes: few rays, far apart ---- */
+
+/* A tube of plane waves that flat mirrors lead to a small plate, which sends it back to the radar.
+ * The plate is cut so that it takes `columns` x `rows` tubes whole, and is tilted so that the phase
+ * makes so many turns over it, either way. */
+struct relay {
+    uint32_t mirrors, columns, rows;
+    double turns_aside, turns_above;
+    const char *material; /* of the plate */
+};
+
+enum { RELAY_MIRRORS_MAX = 2 };
+static const double relay_step_m = 0.05, relay_depression_deg = 30, relay_way_m = 0.9;
+
+static struct vec mirrored_by(struct vec v, struct vec normal)
+{
+    return vec_mad(v, normal, -2 * vec_dot(v, normal));
+}
+
+static struct vec unit(struct vec v)
+{
+    return vec_scale(v, 1 / vec_length(v));
+}
+
+/* A square of 0.5 m about `centre`. */
+static void add_mirror(struct mesh *m, struct vec centre, struct vec normal)
+{
+    const struct vec any = fabs(normal.z) < 0.7 ? (struct vec){0, 0, 1} : (struct vec){1, 0, 0};
+    const struct vec u = vec_scale(unit(vec_cross(any, normal)), 0.5);
+    const struct vec v = vec_cross(normal, u);
+    const struct vec corner = vec_mad(vec_mad(centre, u, -0.5), v, -0.5);
+    shape_plate(m, corner, u, v, mesh_material(m, "metal"));
+}
+
+/* What the sight must have of an edge `across`, so that its image turns the phase so often. `back`
+ * is where the sight comes from when it is led the other way. */
+static double sight_part(const struct trace_axes *x, struct vec across, struct vec back,
+                         double turns)
+{
+    return (turns * lambda - vec_dot(across, back)) / (1 + vec_dot(x->sight, back));
+}
+
+/* Fill `normals` of the mirrors that lead the sight along fixed ways, none of them along an axis.
+ */
+static void lead(const struct trace_axes *x, struct vec normals[RELAY_MIRRORS_MAX])
+{
+    const struct vec first = unit(vec_mad(vec_mad(x->across, x->rise, 0.35), x->sight, 0.2));
+    const struct vec second = unit(vec_mad(vec_mad(x->rise, x->across, 0.25), x->sight, -0.3));
+    normals[0] = unit(vec_sub(first, x->sight));
+    normals[1] = unit(vec_sub(second, first));
+}
+
+static struct mesh relay_mesh(const struct relay *r)
+{
+    const struct trace_axes x =
+        trace_axes_of(&(struct trace_look){0, relay_depression_deg, lambda});
+    struct vec normals[RELAY_MIRRORS_MAX], back = x.sight, along = x.sight;
+    const double step_up_m = relay_step_m * tan(relay_depression_deg * pi / 180);
+    struct vec at = vec_mad(vec_scale(x.across, r->columns % 2 * relay_step_m / 2), x.rise,
+                            r->rows % 2 * step_up_m / 2);
+    struct vec u = vec_scale(x.across, r->columns * relay_step_m);
+    struct vec v = vec_scale(x.rise, r->rows * step_up_m);
+    struct mesh m = {0};
+    lead(&x, normals);
+    for (uint32_t i = r->mirrors; i-- > 0;) {
+        back = mirrored_by(back, normals[i]);
+    }
+    u = vec_mad(u, x.sight, sight_part(&x, u, back, r->turns_aside));
+    v = vec_mad(v, x.sight, sight_part(&x, v, back, r->turns_above));
+    for (uint32_t i = 0; i < r->mirrors; i++) {
+        add_mirror(&m, at, normals[i]);
+        along = mirrored_by(along, normals[i]);
+        u = mirrored_by(u, normals[i]);
+        v = mirrored_by(v, normals[i]);
+        at = vec_mad(at, along, relay_way_m);
+    }
+    shape_plate(&m, vec_mad(vec_mad(at, u, -0.5), v, -0.5), u, v, mesh_material(&m, r->material));
+    return m;
+}
+
+/* Leave the echoes of the plate by way of all mirrors, and count them. */
+static uint32_t block_others(struct trace_records *t, const struct relay *r)
+{
+    uint32_t left = 0;
+    for (uint32_t b = 0; b < t->bounce_count; b++) {
+        for (uint32_t i = 0; i < t->bounces[b].count; i++) {
+            struct trace_record *echo = &t->bounces[b].records[i];
+            const bool is_plate = strcmp(t->materials[echo->material], r->material) == 0;
+            if (b == r->mirrors && is_plate) {
+                left += !(echo->flags & TRACE_BLOCKED);
+            } else {
+                echo->flags |= TRACE_BLOCKED;
+            }
+        }
+    }
+    return left;
+}
+
+/* Field of the echo from the plate alone, over that of a mirror of its area seen straight on. */
+static double relayed(const struct relay *r)
+{
+    const struct reflect_law law = metal_law(REFLECT_FRESNEL_HH);
+    struct mesh m = relay_mesh(r);
+    struct trace_records t = traced(&m, relay_depression_deg, relay_step_m, 1);
+    assert_int_equal(block_others(&t, r), r->columns * r->rows);
+    const double plate_m2 = r->columns * t.sensor.step_across_m * (r->rows * t.sensor.step_up_m);
+    const double field = cabs(coherent_total(&t, &law, 1));
+    trace_records_free(&t);
+    return field / (sqrt(4 * pi) / lambda * plate_m2);
+}
+
+static double sinc(double turns)
+{
+    return turns == 0 ? 1 : fabs(sin(pi * turns) / (pi * turns));
+}
+
+/* Physical optics of a flat plate is the product of two sincs of the turns over it, wherever the
+ * wave comes from. Tubes as wide as a third of the plate give it, because each is the sum over its
+ * own width; point by point it would be wrong by a tenth and more. Mirrors turn the tubes over. */
+TEST(few_wide_tubes_give_what_physical_optics_says)
+{
+    static const double turns[][2] = {{0, 0}, {0.9, 0}, {0, 1.2}, {1.3, 0.7}, {-0.8, 1.4}};
+    for (uint32_t mirrors = 0; mirrors <= RELAY_MIRRORS_MAX; mirrors++) {
+        for (size_t i = 0; i < sizeof turns / sizeof turns[0]; i++) {
+            const struct relay r = {mirrors, 3, 4, turns[i][0], turns[i][1], "plate"};
+            assert_near(relayed(&r), sinc(turns[i][0]) * sinc(turns[i][1]), 1e-3);
+        }
+    }
+}
+
+/* Up to half a turn over one tube it is a sinc; beyond, either way, what rays cannot show. */
+TEST(a_tube_of_more_than_half_a_turn_is_left_out)
+{
+    static const double turns[][2] = {{0.49, 0}, {0, 0.49}, {-0.49, 0.49}, {0.3, -0.4}};
+    static const double beyond[][2] = {{0.51, 0}, {0, 0.51}, {-0.51, 0.1}, {0.1, -0.51}};
+    for (int i = 0; i < 4; i++) {
+        const struct relay within = {0, 1, 1, turns[i][0], turns[i][1], "plate"};
+        assert_near(relayed(&within), sinc(turns[i][0]) * sinc(turns[i][1]), 1e-3);
+        const struct relay left_out = {0, 1, 1, beyond[i][0], beyond[i][1], "plate"};
+        assert_near(relayed(&left_out), 0, 1e-9);
+    }
+}
+
+/* The ground's own first reflection is left out, and no other. */
+TEST(ground_returns_as_a_mirror_does_after_the_first_reflection_alone)
+{
+    for (uint32_t mirrors = 0; mirrors <= RELAY_MIRRORS_MAX; mirrors++) {
+        const struct relay r = {mirrors, 3, 4, 0, 0, "ground"};
+        assert_near(relayed(&r), mirrors > 0 ? 1 : 0, 1e-3);
+    }
+}
+
 /* ---- the response ---- */
 
 enum { SIDE = 512, MIDDLE = SIDE / 2 };
