@@ -262,12 +262,11 @@ static void find_size(const struct setup *s, const struct trace_grid *grid, int 
     *height = (int)(grid->cells_range / (uint32_t)s->ratio);
 }
 
-float *setup_chip(const struct setup *s, const struct trace_records *r, int *width, int *height)
+float *setup_cells(const struct setup *s, const struct trace_records *r, int *width, int *height)
 {
     struct reflect_law law;
     const struct trace_grid *grid = &r->grid;
-    if (pix_resolution_check(s->resolution_m, grid->cell_m) != 0 || check_ratio(s, grid) != 0 ||
-        setup_law(s, r, &law) != 0) {
+    if (setup_law(s, r, &law) != 0) {
         return NULL;
     }
     float *power = malloc((size_t)grid->cells_across * grid->cells_range * sizeof *power);
@@ -275,11 +274,27 @@ float *setup_chip(const struct setup *s, const struct trace_records *r, int *wid
         hs_error("picture", "give fewer --cells", "out of memory");
         return NULL;
     }
-    if (accumulate(r, &law, power) != 0 || make_chip(s, grid, power) != 0) {
+    if (accumulate(r, &law, power) != 0) {
         free(power);
         return NULL;
     }
-    find_size(s, grid, width, height);
+    *width = (int)grid->cells_across;
+    *height = (int)grid->cells_range;
+    return power;
+}
+
+float *setup_chip(const struct setup *s, const struct trace_records *r, int *width, int *height)
+{
+    if (pix_resolution_check(s->resolution_m, r->grid.cell_m) != 0 ||
+        check_ratio(s, &r->grid) != 0) {
+        return NULL;
+    }
+    float *power = setup_cells(s, r, width, height);
+    if (power && make_chip(s, &r->grid, power) != 0) {
+        free(power);
+        return NULL;
+    }
+    find_size(s, &r->grid, width, height);
     return power;
 }
 

@@ -24,7 +24,10 @@ static const struct hs_usage usage = {
 struct outputs {
     const char *png, *csv, *complex_file;
     int zoom;
-    bool is_coherent;
+    int tone; /* enum chip_tone_kind */
+    double cut_db;
+    long levels;
+    bool is_coherent, is_raw;
     int weighting; /* enum focus_weighting */
     long layer;    /* the only reflection whose echoes count, from 1; 0: all do */
 };
@@ -53,8 +56,10 @@ static int write_png(const struct setup *s, const struct outputs *o, const float
     if (!pixels) {
         return hs_error(o->png, "give a smaller --zoom", "out of memory");
     }
-    chip_draw(power, width, height, chip_peak(power, width * height), s->range_db, o->zoom, pixels,
-              wide);
+    const enum chip_tone_kind kind = (enum chip_tone_kind)o->tone;
+    const struct chip_tone tone = {kind, chip_peak(power, width * height),
+                                   kind == CHIP_CUT ? o->cut_db : s->range_db, (int)o->levels};
+    chip_draw(power, width, height, &tone, o->zoom, pixels, wide);
     const int result = hs_png_write_xrgb(o->png, pixels, wide, high, (size_t)wide);
     free(pixels);
     return result;
@@ -86,11 +91,19 @@ static float *coherent_power(const struct setup *s, const struct trace_records *
     return power;
 }
 
+static float *chip_power(const struct setup *s, const struct trace_records *r,
+                         const struct outputs *o, int *width, int *height)
+{
+    if (o->is_coherent) {
+        return coherent_power(s, r, o, width, height);
+    }
+    return o->is_raw ? setup_cells(s, r, width, height) : setup_chip(s, r, width, height);
+}
+
 static int render(const struct setup *s, const struct trace_records *r, const struct outputs *o)
 {
     int width, height;
-    float *power = o->is_coherent ? coherent_power(s, r, o, &width, &height)
-                                  : setup_chip(s, r, &width, &height);
+    float *power = chip_power(s, r, o, &width, &height);
     if (!power) {
         return -1;
     }
@@ -161,10 +174,10 @@ static int check_outputs(const struct setup *s, const char *records, const struc
 int target_cmd_render(int argc, char **argv)
 {
     struct setup s = setup_default();
-    struct outputs o = {.zoom = 6, .weighting = FOCUS_TAYLOR};
+    struct outputs o = {.zoom = 6, .weighting = FOCUS_TAYLOR, .cut_db = 20, .levels = 256};
     const char *records = NULL;
     long zoom = 6;
-    enum { OWN = 25, COUNT = OWN + SETUP_OPTIONS };
+    enum { OWN = 33, COUNT = OWN + SETUP_OPTIONS };
     struct hs_option options[COUNT] = {
         {"records", HS_INPUT, &records, 0, 0, "FILE.trace", "in place of a model", false},
         {"out", HS_OUTPUT, &o.png, 0, 0, "FILE.png", "the picture", false},
@@ -177,6 +190,17 @@ int target_cmd_render(int argc, char **argv)
         {"layer", HS_INTEGER, &o.layer, 0, TRACE_BOUNCES_MAX, "N",
          "echoes of the Nth reflection alone; 0: of all", false},
         {"zoom", HS_INTEGER, &zoom, 1, 64, "N", "dots of the PNG a pixel, either way", false},
+        {"raw", HS_FLAG, &o.is_raw, 0, 0, NULL,
+         "the cells before the radar's response, pixels and speckle (Niu and others, Figure 26)",
+         false},
+        {"tone", HS_CHOICE, &o.tone, 0, 0, CHIP_TONE_WORDS,
+         "grey by dB, or by the amplitude: white at the peak, or cut off below it", false},
+        {"cut-db", HS_REAL, &o.cut_db, 0, 100, "DB", "how far below the peak that is", false},
+        {"levels", HS_INTEGER, &o.levels, 2, 256, "N", "of grey in the PNG", false},
+        HS_CLASHES_ROW("raw", "coherent|looks|resolution|pixel"),
+        HS_NEEDS_ROW("tone", "out"),
+        HS_NEEDS_ROW("cut-db", "tone=cut"),
+        HS_NEEDS_ROW("levels", "out"),
         {"azimuth", HS_REAL, &s.azimuth_deg, -360, 360, "DEG",
          "of the radar, from the model's nose towards its right", false},
         HS_NEEDS_ROW("complex", "coherent"),

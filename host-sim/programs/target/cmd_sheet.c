@@ -66,9 +66,10 @@ static void draw_pair(const struct setup *s, const struct scene *scene, const st
     const int y = GAP + i / l->columns * (side + CAPTION + GAP);
     uint32_t *corner = sheet->pixels + y * sheet->width + x;
     const struct view view = {azimuth_of(s, l, i), 40, (double)s->cells * s->cell_m};
+    const struct chip_tone tone = {CHIP_DB, white, s->range_db, 256};
     view_draw(scene, &view, corner, side, sheet->width);
     chip_draw(strip->power + (size_t)i * (size_t)(strip->width * strip->height), strip->width,
-              strip->height, white, s->range_db, zoom, corner + side + GAP, sheet->width);
+              strip->height, &tone, zoom, corner + side + GAP, sheet->width);
     char text[64];
     snprintf(text, sizeof text, "azimuth %g", fmod(azimuth_of(s, l, i), 360));
     sheet_text(sheet, x, y + side + 4, text, INK_BLACK);

@@ -1,4 +1,5 @@
 #include "commands.h"
+#include "histogram_picture.h"
 #include "table_picture.h"
 
 #include "hs/error.h"
@@ -14,13 +15,43 @@ static const struct hs_usage usage = {
     "`landmass-target render` with any law of reflection, or to train a network on."};
 
 struct outputs {
-    const char *records, *picture;
+    const char *records, *picture, *histograms;
     long bounce; /* of the picture, from 1 */
 };
+
+static void report_histograms(const struct histogram h[HISTOGRAM_CHANNELS])
+{
+    hs_report_array("histograms");
+    for (int i = 0; i < HISTOGRAM_CHANNELS; i++) {
+        hs_report_object(NULL);
+        hs_report_text("name", h[i].name);
+        hs_report_real("low", h[i].low);
+        hs_report_real("high", h[i].high);
+        hs_report_count("beyond", h[i].beyond);
+        hs_report_array("counts");
+        for (int k = 0; k < HISTOGRAM_BINS; k++) {
+            hs_report_count(NULL, h[i].counts[k]);
+        }
+        hs_report_close();
+        hs_report_close();
+    }
+    hs_report_close();
+}
+
+static int write_histograms(const struct trace_records *r, const char *path)
+{
+    struct histogram h[HISTOGRAM_CHANNELS];
+    histograms_of(r, h);
+    report_histograms(h);
+    return histogram_picture(h, path);
+}
 
 static int write_outputs(const struct trace_records *r, const struct outputs *o)
 {
     if (trace_records_write(r, o->records) != 0) {
+        return -1;
+    }
+    if (o->histograms && write_histograms(r, o->histograms) != 0) {
         return -1;
     }
     if (!o->picture) {
@@ -73,8 +104,8 @@ static int run(const struct setup *s, const struct outputs *outputs)
 int target_cmd_trace(int argc, char **argv)
 {
     struct setup s = setup_default();
-    struct outputs outputs = {NULL, NULL, 2};
-    enum { OWN = 5, COUNT = OWN + SETUP_MODEL_OPTIONS + SETUP_TRACE_OPTIONS };
+    struct outputs outputs = {.bounce = 2};
+    enum { OWN = 6, COUNT = OWN + SETUP_MODEL_OPTIONS + SETUP_TRACE_OPTIONS };
     struct hs_option options[COUNT] = {
         {"out", HS_OUTPUT, &outputs.records, 0, 0, "FILE.trace", "the records", true},
         {"picture", HS_OUTPUT, &outputs.picture, 0, 0, "FILE.png",
@@ -84,6 +115,8 @@ int target_cmd_trace(int argc, char **argv)
         {"picture-of", HS_INTEGER, &outputs.bounce, 1, TRACE_BOUNCES_MAX, "N",
          "which reflection that is", false},
         HS_NEEDS_ROW("picture-of", "picture"),
+        {"histograms", HS_OUTPUT, &outputs.histograms, 0, 0, "FILE.png",
+         "how often each angle, phase and place was recorded (Niu and others, Figure 13)", false},
         {"azimuth", HS_REAL, &s.azimuth_deg, -360, 360, "DEG",
          "of the radar, from the model's nose towards its right", false},
     };

@@ -61,6 +61,9 @@ int setup_law(const struct setup *s, const struct trace_records *r, struct refle
  * caller frees it. NULL with the error reported. */
 float *setup_chip(const struct setup *s, const struct trace_records *r, int *width, int *height);
 
+/* The same before its last step: the power in each cell. */
+float *setup_cells(const struct setup *s, const struct trace_records *r, int *width, int *height);
+
 /* The same as complex numbers (tracer/focus.h): fields with their phase, under that weighting. */
 float complex *setup_complex_chip(const struct setup *s, const struct trace_records *r,
                                   enum focus_weighting weighting, int *width, int *height);

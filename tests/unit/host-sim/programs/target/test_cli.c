@@ -223,6 +223,50 @@ TEST(a_signature_is_baked_the_same_by_any_number_of_threads)
                      0);
 }
 
+/* [Niu], Figure 26. Before the response the whole power is in the cells, as after it; in a picture
+ * of four levels there are four greys, and cutting off 20 dB below the peak makes more of it white.
+ */
+TEST(the_picture_before_its_last_step_is_shown)
+{
+    assert_int_equal(
+        run("render --model slicy --rays 1 --raw --csv raw.csv --out peak.png --zoom 1 "
+            "--tone peak --levels 4"),
+        0);
+    assert_int_equal(run("render --model slicy --rays 1 --csv chip.csv"), 0);
+    assert_int_equal(shell("test $(wc -l <raw.csv) = 108 && awk -F, '{ for (i = 1; i <= NF; i++) "
+                           "s[FILENAME] += $i * $i } END { r = s[\"raw.csv\"] / s[\"chip.csv\"]; "
+                           "print r; exit !(r > 0.9 * 4 && r < 1.1 * 4) }' raw.csv chip.csv"),
+                     0);
+    assert_int_equal(run("render --model slicy --rays 1 --raw --out cut.png --zoom 1 --tone cut "
+                         "--levels 4"),
+                     0);
+    assert_int_equal(
+        shell("gdalinfo -hist peak.png >peak.txt && gdalinfo -hist cut.png >cut.txt && "
+              "whites() { grep -A1 'buckets from' $1 | sed -n 2p | awk '{ print $NF }'; "
+              "}; greys() { grep -A1 'buckets from' $1 | sed -n 2p | tr ' ' '\\n' | "
+              "grep -c '^[1-9]'; } && test $(greys peak.txt) = 4 && "
+              "test $(whites cut.txt) -gt $(whites peak.txt)"),
+        0);
+    assert_int_equal(run("render --model slicy --raw --looks 2 --csv x.csv 2>errors"), 2);
+    assert_int_equal(run("render --model slicy --out x.png --cut-db 3 2>errors"), 2);
+}
+
+TEST(histograms_count_every_reflection)
+{
+    assert_int_equal(run("trace --model slicy --rays 1 --out s.trace --histograms h.png "
+                         "--json h.json >h.txt"),
+                     0);
+    assert_int_equal(
+        shell("head -c 4 h.png | tail -c 3 | grep -q PNG && python3 -c \"import json; "
+              "r = json.load(open('h.json'))['report']; n = sum(r['reflections']); "
+              "h = r['histograms']; assert len(h) == 6; "
+              "[exit(1) for x in h if sum(x['counts']) + x['beyond'] != n]; "
+              "i = h[0]; top = i['counts'].index(max(i['counts'])); "
+              /* Level ground at 15 degrees of depression: 75 from its normal, 1.5 a bin. */
+              "assert i['name'] == 'incidence_deg' and 49 <= top <= 50\""),
+        0);
+}
+
 /* The strongest points of a dihedral by way of both plates, one body: triangle by triangle,
  * at the height of the seam. A plate without ground comes back once. */
 TEST(a_map_names_parts_triangles_and_heights)
