@@ -1,7 +1,10 @@
 /* What hides what, against the full terrain: lines of the ground map at every range scale, from
  * images that the builder made, against lines of sight over the very rasters that it was given.
  * Cells that every line of sight about them finds hidden must be dark, and cells that all of them
- * find lit must be lit. A ridge that is narrower than a cell must hide what geometry says. */
+ * find lit must be lit. A ridge that is narrower than a cell must hide what geometry says.
+ *
+ * The scenes of Sentinel-2 and Landsat are not among them: they are squares of 2.5 and 9 km, of
+ * which even a sector of 10 nm sees a corner, and their terrain is SRTM once more. */
 #include "check.h"
 #include "real_scene.h"
 #include "support.h"

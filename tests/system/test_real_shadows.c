@@ -162,6 +162,7 @@ static uint8_t *draw_shadows(struct world *w, const struct patch *p)
 
 struct overlap {
     int both, either, pixels;
+    int sure_both, sure_either; /* of pixels farther than a cell from any border of the viewshed */
 };
 
 /* Where the patch has the pixel: on the ray to it, by EQUATIONS.md. */
@@ -176,10 +177,25 @@ static int is_dark(const struct world *w, const struct patch *p, const uint8_t *
     return shadows[k * CELLS + i];
 }
 
+/* True if the viewshed says the same of all pixels within `reach` pixels. */
+static bool is_sure(const uint8_t *seen, int width, int row, int column, int reach)
+{
+    const uint8_t here = seen[row * width + column];
+    for (int y = row - reach; y <= row + reach; y++) {
+        for (int x = column - reach; x <= column + reach; x++) {
+            if (seen[y * width + x] != here) {
+                return false;
+            }
+        }
+    }
+    return true;
+}
+
 static struct overlap compare(const struct world *w, const struct patch *p, GDALDatasetH terrain,
                               const uint8_t *seen, const uint8_t *shadows)
 {
     struct overlap o = {0};
+    const int reach = (int)ceil(p->side_m / CELLS / post_m);
     double forward[6];
     GDALGetGeoTransform(terrain, forward);
     for (int row = 0; row < height_of(terrain); row++) {
@@ -192,6 +208,10 @@ static struct overlap compare(const struct world *w, const struct patch *p, GDAL
                 o.both += hidden && dark;
                 o.either += hidden || dark;
                 o.pixels++;
+                if (is_sure(seen, width_of(terrain), row, column, reach)) {
+                    o.sure_both += hidden && dark;
+                    o.sure_either += hidden || dark;
+                }
             }
         }
     }
@@ -204,9 +224,12 @@ static void judge(struct world *w, const struct patch *p, GDALDatasetH terrain, 
     uint8_t *seen = viewshed(terrain, p), *shadows = draw_shadows(w, p);
     const struct overlap o = compare(w, p, terrain, seen, shadows);
     const double overlap = (double)o.both / o.either;
-    print_message("# %.1f km wide at %.0f km: %.1f %% in shadow, overlap %.3f\n", p->side_m / 1000,
-                  p->range_m / 1000, 100.0 * o.both / o.pixels, overlap);
-    assert_true(o.both * 4 > o.pixels && overlap >= least);
+    const double sure = (double)o.sure_both / o.sure_either;
+    print_message(
+        "# %.1f km wide at %.0f km: %.1f %% in shadow, overlap %.3f; %.3f farther than a "
+        "cell from borders\n",
+        p->side_m / 1000, p->range_m / 1000, 100.0 * o.both / o.pixels, overlap, sure);
+    assert_true(o.both * 4 > o.pixels && overlap >= least && sure >= 0.99);
     free(seen);
     free(shadows);
 }
@@ -247,9 +270,11 @@ static void fill_with_hills(GDALDatasetH d, struct real_place antenna)
     free(row_m);
 }
 
-/* Cells of 40 m over posts 76 m apart miss crests of the mountains that the viewshed's own 20 m
- * find: over posts 38 m apart the widest two have 0.948 and 0.930. Lines of sight over the
- * viewshed's own terrain, asked in the middles of cells of 40 m, have no more than 0.96 and 0.94.
+/* The widest two patches over the mountains, in cells of 40 m, have an overlap of 0.928 and 0.906.
+ * What is missing lies within a cell of the shadows' borders, and these shadows are all borders: of
+ * pixels farther from one than a cell 0.998 agree, as in every patch (0.99 is asked for). Over
+ * posts 38 m apart and not 76 the two have 0.948 and 0.930. Lines of sight over the viewshed's own
+ * terrain, asked in the middles of cells of 40 m, have no more than 0.96 and 0.94.
  * With parallel lines the widest two have an overlap of 0.80 and 0.88 over the hills, and of 0.75
  * and 0.84 over the mountains. */
 static const struct {
