@@ -53,6 +53,8 @@ $(call fuzz_target, part,         build terrain resample reflectivity image gis 
 $(call fuzz_target, rules,        vectors gis lib firmware fixed)
 $(call fuzz_target, osm_pbf,      vectors gis lib firmware fixed)
 $(call fuzz_target, cdb_name,     visual gis lib)
+$(call fuzz_target, obj,          visual gis lib)
+$(O)/sanitized/tests/fuzz/fuzz_obj.o: EXTRA_CFLAGS := -Ihost-sim/visual
 $(call fuzz_target, osm_xml,      vectors gis lib firmware fixed)
 $(call fuzz_target, mstar,        netem lib)
 $(call fuzz_target, mat,          realradar gis lib firmware fixed)
@@ -70,3 +72,8 @@ TESTS += $(FUZZ_NAMES:%=$(O)/bin/tests/fuzz/test_fuzz_%)
 
 .PHONY: fuzz-programs
 fuzz-programs: $(FUZZ_NAMES:%=$(O)/bin/fuzz/%)
+
+.PHONY: fuzz-count
+fuzz-count: ## Print how many inputs the fuzz targets try in each `make check`
+	@grep -ho 'fuzz_mutations = [0-9]*' tests/fuzz/fuzz_*.c | awk -v seeds=$$(find tests/fuzz/corpus -type f | wc -l) \
+	    '{ n += $$3 } END { print NR " targets: " seeds " inputs of their corpora, " n " mutations of them" }'

@@ -10,6 +10,7 @@ make --no-print-directory -j2 CC=clang FUZZER=1 O=$o fuzz-programs || exit 1
 mkdir -p $o/findings $o/logs
 targets=${*:-$(ls $o/bin/fuzz)}
 failed=0
+all=0
 for target in $targets; do
     mkdir -p "$o/corpus/$target"
     if "$o/bin/fuzz/$target" -max_total_time="$seconds" -timeout=20 -rss_limit_mb=2048 -print_final_stats=1 \
@@ -17,10 +18,12 @@ for target in $targets; do
     then
         runs=$(sed -n 's/^stat::number_of_executed_units: *//p' "$o/logs/$target")
         cover=$(sed -n 's/.* cov: \([0-9]*\).*/\1/p' "$o/logs/$target" | tail -n 1)
+        all=$((all + runs))
         echo "$target: no finding in $runs runs, $cover edges covered"
     else
         failed=1
         echo "$target: FOUND SOMETHING, see $o/logs/$target and $o/findings"
     fi
 done
+echo "$all inputs without a finding"
 exit $failed

@@ -3,7 +3,10 @@
  * Proved: prove_header, prove_band, prove_classes: what passes a check has the ranges that lm/db.h
  * names, so that no row, column or shift of a tile leaves its type. prove_section: a section that
  * is found lies inside the image. prove_entry: a directory entry that passes leads into TILES and
- * DETAIL, a record's size is 1..273 units. Any checksum may match.
+ * DETAIL, a record's size is 1..273 units. Any checksum may match. prove_lookup: a tile that is
+ * found by any row and column lies in a band, and its entry is one of that band's. prove_inside: it
+ * is one of the directory's, in bands of up to 31 rows and columns; a product of longer numbers is
+ * too much for the solver.
  *
  * Assumed: no flash is larger than 2^62 bytes. */
 #include "firmware/map/db.c"
@@ -49,6 +52,8 @@ void prove_header(void)
 {
     const struct lm_image_header h = a_sound_header();
     PROVE(h.shift0 + h.lod_count - 1 + LM_TILE_CELLS_LOG2 + 3 < 32);
+    PROVE(h.shift0 >= LM_DB_SHIFT_MIN && h.lod_count >= 1 && h.lod_count <= LM_DB_LODS_MAX &&
+          h.shift0 + h.lod_count - 1 <= LM_DB_SHIFT_MAX);
     PROVE(h.band_count <= LM_DB_BANDS_MAX && h.section_count <= LM_IMAGE_SECTIONS_MAX);
     PROVE(h.mean_elevation_m_q6 >= -(1 << 20) && h.mean_elevation_m_q6 <= 1 << 20);
 }
@@ -107,4 +112,33 @@ void prove_entry(void)
     }
 }
 
-/* The directory holds an entry for each number, also where a pointer has 32 bits. */
+/* An image of one band, of any shift that a header may have: each further band is a turn of the
+ * same loop. */
+static struct lm_db a_db_of_a_band(void)
+{
+    struct lm_db db = nondet_db();
+    ASSUME(db.shift0 >= LM_DB_SHIFT_MIN && db.lod_count >= 1 && db.lod_count <= LM_DB_LODS_MAX &&
+           db.shift0 + db.lod_count - 1 <= LM_DB_SHIFT_MAX);
+    db.band_count = 1;
+    ASSUME(band_is_sound(&db, &db.bands[0]));
+    return db;
+}
+
+void prove_lookup(void)
+{
+    const struct lm_db db = a_db_of_a_band();
+    const struct lm_band *b = &db.bands[0];
+    const uint8_t lod = nondet_u8();
+    const uint32_t row = nondet_u32(), column = nondet_u32();
+    const int64_t entry = lm_db_entry(&db, lod, row, column);
+    PROVE(entry == -1 || entry >= b->entry0);
+    PROVE(entry == -1 || (lod == b->lod && row >= b->row0 && row - b->row0 < b->rows));
+    PROVE(entry == -1 || column >> (26 - db.shift0 - lod - b->zone) == 0);
+}
+
+void prove_inside(void)
+{
+    const struct lm_db db = a_db_of_a_band();
+    ASSUME(db.bands[0].rows < 32 && db.bands[0].columns < 32);
+    PROVE(lm_db_entry(&db, nondet_u8(), nondet_u32(), nondet_u32()) < db.entry_count);
+}
