@@ -80,15 +80,55 @@ static inline size_t neon_next_block(size_t i, uint32_t cells)
     return i + LM_LANES < cells ? i + LM_LANES : i;
 }
 
+/* Signals of sixteen bins, biased: none is the least of 16 bits. */
+static inline int16x8x2_t neon_signals_of_16(uint32x4x4_t power)
+{
+    const uint16x8_t unit = vdupq_n_u16((uint16_t)(LM_K_DETECT_BIAS_DB_Q8 - LM_K_UNIT_Q24_DB_Q8));
+    const uint16x8x2_t some = neon_add_db_q8_of_16((uint16x8x2_t){{unit, unit}}, power);
+    int16x8x2_t signal;
+    for (size_t n = 0; n < 2; n++) {
+        const uint16x8_t held = vqmovn_high_u32(vqmovn_u32(power.val[2 * n]), power.val[2 * n + 1]);
+        signal.val[n] =
+            vbslq_s16(vceqzq_u16(held), vdupq_n_s16(INT16_MIN), vreinterpretq_s16_u16(some.val[n]));
+    }
+    return signal;
+}
+
+/* The noise of the same bins, biased as the rise is. */
+static inline int16x8x2_t neon_noise_of_16(const struct lm_k_receiver *r, size_t i, size_t next,
+                                           int32x4_t rise)
+{
+    const size_t at[2] = {i, next};
+    int16x8x2_t noise;
+    for (size_t n = 0; n < 2; n++) {
+        const int32_t *const mean = r->noise_db_q8 + at[n];
+        const int16x8_t held =
+            neon_held_8(vaddq_s32(vld1q_s32(mean), rise), vaddq_s32(vld1q_s32(mean + 4), rise));
+        noise.val[n] = vqaddq_s16(held, vld1q_s16(r->row_db_q8 + r->entry[at[n] / LM_LANES]));
+    }
+    return noise;
+}
+
 void lm_k_detect(const struct lm_k_receiver *receiver, const uint32_t *power_q24,
                  int32_t *restrict level_q8, uint32_t cells)
 {
     const struct lm_k_receiver r = *receiver;
     const struct neon_sum_lines lines = neon_sum_lines();
+    const int32x4_t rise = vdupq_n_s32(r.rise_db_q8 + LM_K_DETECT_BIAS_DB_Q8);
+    const int16x8_t bias = vdupq_n_s16(-LM_K_DETECT_BIAS_DB_Q8);
     for (size_t i = 0; i < cells; i += NEON_CELLS) {
         const size_t next = neon_next_block(i, cells);
-        const int32x4x4_t noise = neon_add_draws(&r, i, next, neon_means_q8(&r, i, next));
-        neon_store_sum(&r, &lines, i, next, neon_signals_q8(power_q24, i, next), noise, level_q8);
+        const uint32x4x4_t power = {{vld1q_u32(power_q24 + i), vld1q_u32(power_q24 + i + 4),
+                                     vld1q_u32(power_q24 + next), vld1q_u32(power_q24 + next + 4)}};
+        const int16x8x2_t sum =
+            neon_db_q8_sum_16(lines.lows, lines.highs, lines.falls, neon_signals_of_16(power),
+                              neon_noise_of_16(&r, i, next, rise));
+        const int32x4x4_t wide = {{vaddl_s16(vget_low_s16(sum.val[0]), vget_low_s16(bias)),
+                                   vaddl_high_s16(sum.val[0], bias),
+                                   vaddl_s16(vget_low_s16(sum.val[1]), vget_low_s16(bias)),
+                                   vaddl_high_s16(sum.val[1], bias)}};
+        const int32x4x4_t fall = neon_load_8_and_8(r.fall_db_q8 + i, r.fall_db_q8 + next);
+        neon_store_8_and_8(level_q8 + i, level_q8 + next, neon_less(wide, fall));
     }
 }
 

@@ -12,12 +12,6 @@ void lm_k_grain_add(const struct lm_k_curve *curve, const int8_t *grain_q5,
     }
 }
 
-/* Levels held within 16 bits. */
-static inline int16x8_t neon_held_8(int32x4_t low, int32x4_t high)
-{
-    return vqmovn_high_s32(vqmovn_s32(low), high);
-}
-
 void lm_k_grain_floor(const struct lm_k_curve *curve, const int8_t *grain_q5, int32_t floor_q8,
                       const int32_t *level_q8, int32_t *restrict noisy_q8, uint32_t cells)
 {
@@ -28,21 +22,15 @@ void lm_k_grain_floor(const struct lm_k_curve *curve, const int8_t *grain_q5, in
     const int16x8_t floor = neon_held_8(vdupq_n_s32(floor_q8), vdupq_n_s32(floor_q8));
     for (size_t i = 0; i < cells; i += NEON_CELLS) {
         const int32x4x4_t wide = vld1q_s32_x4(level_q8 + i);
-        const int16x8_t level[2] = {neon_held_8(wide.val[0], wide.val[1]),
-                                    neon_held_8(wide.val[2], wide.val[3])};
-        const struct neon_db_sum at =
-            neon_db_sum_of_16(vreinterpretq_u16_s16(vabdq_s16(level[0], floor)),
-                              vreinterpretq_u16_s16(vabdq_s16(level[1], floor)));
-        const uint16x8x2_t more_q13 =
-            neon_db_sum_more_q13(vqtbl4q_u8(lows, at.line), vqtbl4q_u8(highs, at.line),
-                                 vqtbl4q_u8(falls, at.line), at.place);
+        const int16x8x2_t level = {
+            {neon_held_8(wide.val[0], wide.val[1]), neon_held_8(wide.val[2], wide.val[3])}};
+        const int16x8x2_t sum =
+            neon_db_q8_sum_16(lows, highs, falls, level, (int16x8x2_t){{floor, floor}});
         const int16x8x2_t db_q8 = neon_curve_db_q8(&lines, vld1q_s8(grain_q5 + i));
         int32x4x4_t noisy;
         for (size_t n = 0; n < 2; n++) {
-            const int16x8_t more_q8 = vreinterpretq_s16_u16(vshrq_n_u16(more_q13.val[n], 5));
-            const int16x8_t sum = vqaddq_s16(vmaxq_s16(level[n], floor), more_q8);
-            noisy.val[2 * n] = vaddl_s16(vget_low_s16(sum), vget_low_s16(db_q8.val[n]));
-            noisy.val[2 * n + 1] = vaddl_high_s16(sum, db_q8.val[n]);
+            noisy.val[2 * n] = vaddl_s16(vget_low_s16(sum.val[n]), vget_low_s16(db_q8.val[n]));
+            noisy.val[2 * n + 1] = vaddl_high_s16(sum.val[n], db_q8.val[n]);
         }
         vst1q_s32_x4(noisy_q8 + i, noisy);
     }

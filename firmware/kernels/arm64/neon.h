@@ -174,6 +174,30 @@ static inline struct neon_db_sum neon_db_sum_of_16(uint16x8_t apart_q8, uint16x8
                                 vshrn_high_n_u16(vshrn_n_u16(apart_q8, 4), further_q8, 4)};
 }
 
+/* Levels held within 16 bits. */
+static inline int16x8_t neon_held_8(int32x4_t low, int32x4_t high)
+{
+    return vqmovn_high_s32(vqmovn_s32(low), high);
+}
+
+/* fx_db_q8_sum_vec of sixteen levels of 16 bits, held within them. */
+static inline int16x8x2_t neon_db_q8_sum_16(uint8x16x4_t lows, uint8x16x4_t highs,
+                                            uint8x16x4_t falls, int16x8x2_t a_q8, int16x8x2_t b_q8)
+{
+    const struct neon_db_sum at =
+        neon_db_sum_of_16(vreinterpretq_u16_s16(vabdq_s16(a_q8.val[0], b_q8.val[0])),
+                          vreinterpretq_u16_s16(vabdq_s16(a_q8.val[1], b_q8.val[1])));
+    const uint16x8x2_t more_q13 =
+        neon_db_sum_more_q13(vqtbl4q_u8(lows, at.line), vqtbl4q_u8(highs, at.line),
+                             vqtbl4q_u8(falls, at.line), at.place);
+    int16x8x2_t sum;
+    for (size_t n = 0; n < 2; n++) {
+        const int16x8_t more_q8 = vreinterpretq_s16_u16(vshrq_n_u16(more_q13.val[n], 5));
+        sum.val[n] = vqaddq_s16(vmaxq_s16(a_q8.val[n], b_q8.val[n]), more_q8);
+    }
+    return sum;
+}
+
 /* Eight numbers, and eight more. */
 static inline int32x4x4_t neon_load_8_and_8(const int32_t *from, const int32_t *and_from)
 {

@@ -85,14 +85,19 @@ struct lm_k_rain {
     const int32_t *rain_db_q8; /* what the drops return, dB of gamma */
 };
 
+/* What lm_k_detect adds to levels, that 16 bits hold them: 48 dB. */
+enum { LM_K_DETECT_BIAS_DB_Q8 = 48 * 256 };
+
 /* Level of each bin: signal and noise added as powers, then less fall_db_q8. The noise is its mean
- * and a draw; 1.0 in Q24 of power is 0 dB; no power counts as -240 dB. Levels within 2^30 of 0.
- * Groups have LM_LANES cells. Cost: 9 a cell. */
+ * and a draw; 1.0 in Q24 of power is 0 dB; no power counts as -176 dB. Signals, noises and
+ * their sums are held between -176 and 80 dB. What is given is within 2^30 of 0. Groups have
+ * LM_LANES cells. Cost: 8 a cell. */
 void lm_k_detect(const struct lm_k_receiver *r, const uint32_t *power_q24, int32_t *level_db_q8,
                  uint32_t cells);
 
 /* Level of each bin in rain. The signal is weaker by the loss. Noise and rain add before the draw,
- * because drops move and fluctuate as the noise does. All else as lm_k_detect. Cost: 12 a cell. */
+ * because drops move and fluctuate as the noise does. Nothing is held: levels are within 2^30 of 0,
+ * and no power counts as -240 dB. All else as lm_k_detect. Cost: 12 a cell. */
 void lm_k_detect_in_rain(const struct lm_k_receiver *r, const struct lm_k_rain *rain,
                          const uint32_t *power_q24, int32_t *level_db_q8, uint32_t cells);
 
