@@ -3,8 +3,9 @@
 # A test program prints "ok N - name", "not ok N - name", or "ok N # SKIP name" (cmocka says "not ok" there too).
 # A program that dies, or prints no result at all, counts as one failure.
 # Programs that clang made to count what they run leave that in BUILD-DIR/profiles (make coverage).
-# Tests in emulated machines (panel-vm, zcu102) run beside the others, one after the other as those; their results are
-# printed at the end.
+# Two lanes: tests in emulated machines (panel-vm, zcu102) run one after the other beside those of programs, sockets and
+# browsers. Tests that only compute wait in a queue for the lane that is through first. The results of the lane of the
+# emulated machines are printed at the end.
 set -u
 o=$1
 shift
@@ -32,19 +33,30 @@ run_test() { # PROGRAM
     passed=$((passed + p)) failed=$((failed + f)) skipped=$((skipped + s))
 }
 
-# The tests of standard input, one a line; their sum goes to a file.
+# The next test of the queue, or nothing.
+next_in_queue() {
+    flock "$queue.lock" sed -i -e '1w /dev/stdout' -e 1d "$queue"
+}
+
+# The tests of standard input, one a line, then those of the queue; the sum goes to a file.
 lane() { # FILE
     passed=0 failed=0 skipped=0
     while read -r test; do
+        run_test "$test"
+    done
+    while test=$(next_in_queue) && [ -n "$test" ]; do
         run_test "$test"
     done
     echo "$passed $failed $skipped" >"$1"
 }
 
 is_emulated='/bin/tests/(panel-vm|zcu102)/'
+only_computes='/bin/tests/(discipline|fuzz|golden|realism|system/test_real|unit/(fixed|firmware|host-sim/(build|image|reference|tracer))/)'
+queue=$logs/queue
 rm -f "$logs"/lane-*
+printf '%s\n' "$@" | grep -E "$only_computes" >"$queue"
 printf '%s\n' "$@" | grep -E "$is_emulated" | lane "$logs/lane-emulated" >"$logs/emulated.out" 2>&1 &
-printf '%s\n' "$@" | grep -vE "$is_emulated" | lane "$logs/lane-plain"
+printf '%s\n' "$@" | grep -vE "$is_emulated|$only_computes" | lane "$logs/lane-plain"
 wait
 cat "$logs/emulated.out"
 read -r passed failed skipped <"$logs/lane-plain"

@@ -8,6 +8,8 @@ $(O)/drivers/display/display_dp.o: OPT_board := -O3
 $(O)/bsp/record/rows_crc.o: OPT_board += -O2
 # At -O3 these grow by copies of loops that save no instruction.
 $(addprefix $(O)/firmware/,radar/weather.o clutter/class_gain.o): OPT_core := -O2
+# Nor do these of its loops.
+$(O)/firmware/display/scan_conv.o: OPT_core += -fno-unswitch-loops -fno-peel-loops -fno-ipa-cp-clone -fno-split-paths
 # Every tile goes through it.
 $(O)/bsp/zcu102/crc32c.o: OPT_board += -O2
 LDSCRIPT       := linker/zcu102.ld

@@ -227,6 +227,28 @@ static int read_geoid(struct lm_db *db, const struct lm_image_header *h, uint32_
     return lm_geoid_is_sound(&db->geoid) ? LM_OK : LM_ERR_CORRUPT;
 }
 
+/* So are its pages. Each is checked when it is read. */
+static int read_geoid_pages(struct lm_db *db, const struct lm_image_header *h, uint32_t poll_limit)
+{
+    struct lm_geoid_pages_head head;
+    const struct lm_image_section *s;
+    const int status = read_head(db, h, LM_IMAGE_GEOID_PAGES, &head, sizeof head, &s, poll_limit);
+    db->geoid_pages.rows = 0;
+    if (status != LM_OK || s == NULL) {
+        return status;
+    }
+    if (!lm_geoid_pages_are_sound(&head, s->bytes)) {
+        return LM_ERR_CORRUPT;
+    }
+    db->geoid_pages = (struct lm_geoid_pages){.offset = s->offset + sizeof head,
+                                              .shift = head.shift,
+                                              .row0 = head.row0,
+                                              .rows = head.rows,
+                                              .column0 = head.column0,
+                                              .columns = head.columns};
+    return LM_OK;
+}
+
 /* The tables of radar and bus are optional. Who reads the record checks it. */
 static int find_record(const struct lm_image_header *h, enum lm_image_section_type type,
                        uint64_t *offset, uint32_t *bytes)
@@ -305,6 +327,9 @@ int lm_db_open(struct lm_db *db, const struct lm_flash *flash, uint32_t poll_lim
     int tables = read_tables(db, &h, poll_limit);
     if (tables == LM_OK) {
         tables = read_geoid(db, &h, poll_limit);
+    }
+    if (tables == LM_OK) {
+        tables = read_geoid_pages(db, &h, poll_limit);
     }
     if (tables == LM_OK) {
         tables = find_tiles(db, &h);

@@ -2,6 +2,8 @@
 
 #include <stddef.h>
 
+#include "fx/crc32c.h"
+
 enum { QUARTER = 1 << 30 };
 
 /* Length of a side in BAM. At most 32 steps of 2^27. */
@@ -72,4 +74,40 @@ int32_t lm_geoid_height_m_q6(const struct lm_geoid *g, struct lm_position place)
     const int16_t *north = &g->height_m_q6[r.node + 1][c.node];
     return between(between(south[0], south[1], c.parts), between(north[0], north[1], c.parts),
                    r.parts);
+}
+
+bool lm_geoid_pages_are_sound(const struct lm_geoid_pages_head *h, uint64_t bytes)
+{
+    if (h->shift < LM_GEOID_SHIFT_MIN || h->shift >= LM_GEOID_SHIFT_MAX) {
+        return false;
+    }
+    const uint32_t side_log2 = h->shift + LM_GEOID_PAGE_LOG2;
+    const uint32_t rows_all = 1u << (31 - side_log2), columns_all = 2 * rows_all;
+    return h->rows > 0 && h->row0 < rows_all && h->rows <= rows_all - h->row0 && h->columns > 0 &&
+           h->column0 < columns_all && h->columns <= columns_all &&
+           bytes == sizeof *h + (uint64_t)h->rows * h->columns * sizeof(struct lm_geoid);
+}
+
+uint32_t lm_geoid_page_of(const struct lm_geoid_pages *p, struct lm_position place)
+{
+    const uint32_t side_log2 = p->shift + LM_GEOID_PAGE_LOG2;
+    if (p->rows == 0) {
+        return 0;
+    }
+    const uint32_t row = ((place.latitude + QUARTER) >> side_log2) - p->row0;
+    const uint32_t column = ((place.longitude >> side_log2) - p->column0) & UINT32_MAX >> side_log2;
+    return row < p->rows && column < p->columns ? row * p->columns + column + 1 : 0;
+}
+
+bool lm_geoid_page_is_sound(const struct lm_geoid_pages *p, uint32_t number,
+                            const struct lm_geoid *page)
+{
+    const uint32_t side_log2 = p->shift + LM_GEOID_PAGE_LOG2;
+    const uint32_t row = p->row0 + (number - 1) / p->columns;
+    const uint32_t column = p->column0 + (number - 1) % p->columns;
+    return fx_crc32c(0, page, offsetof(struct lm_geoid, crc)) == page->crc &&
+           lm_geoid_is_sound(page) && page->rows == LM_GEOID_NODES_MAX &&
+           page->columns == LM_GEOID_NODES_MAX && page->latitude_shift == p->shift &&
+           page->longitude_shift == p->shift && page->south == (row << side_log2) - QUARTER &&
+           page->west == column << side_log2;
 }

@@ -63,7 +63,7 @@ static uint32_t terrain_flags(const struct lm_unit *u)
         own->height_quality == LM_NAV_DEAD) {
         return 0;
     }
-    const int32_t height_m_q10 = lm_m_q10_of_m_q6(lm_antenna_height_m_q6(own, &u->map.db));
+    const int32_t height_m_q10 = lm_m_q10_of_m_q6(lm_antenna_height_m_q6(own, &u->map));
     return height_m_q10 + BELOW_M_Q10 < u->ground_m_q10 ? LM_FLAG_BELOW : 0;
 }
 

@@ -2,8 +2,8 @@
 #ifndef LM_UNIT_OWNSHIP_H
 #define LM_UNIT_OWNSHIP_H
 
-#include "lm/db.h"
 #include "lm/nav.h"
+#include "lm/unit_map.h"
 
 static inline struct lm_position lm_ownship_position(const struct lm_ownship *own)
 {
@@ -12,15 +12,15 @@ static inline struct lm_position lm_ownship_position(const struct lm_ownship *ow
 
 /* Height above mean sea level, which the map's elevations refer to. Satellite navigation gives the
  * height above the ellipsoid. */
-static inline int32_t lm_antenna_height_m_q6(const struct lm_ownship *own, const struct lm_db *db)
+static inline int32_t lm_antenna_height_m_q6(const struct lm_ownship *own,
+                                             const struct lm_unit_map *map)
 {
     const bool is_ellipsoidal = own->height_source == LM_BUS_ELLIPSOID_HEIGHT;
     if (!is_ellipsoidal) {
         return own->height_m_q6;
     }
-    return own->height_m_q6 - (db->geoid.rows > 0
-                                   ? lm_geoid_height_m_q6(&db->geoid, lm_ownship_position(own))
-                                   : db->geoid_m_q6);
+    return own->height_m_q6 -
+           lm_geoid_reader_height_m_q6(&map->geoid, &map->db, lm_ownship_position(own));
 }
 
 /* True if position and heading are good or stale. */

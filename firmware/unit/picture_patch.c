@@ -48,7 +48,7 @@ static bool resolve_command(const struct lm_picture *p, struct lm_sar_command *c
     lm_geo_inverse(lm_ownship_position(own), command->centre, &distance_m_q8, &bearing);
     command->look_azimuth = back + FX_BAM_180;
     command->range_m = lm_m_of_m_q8(distance_m_q8);
-    command->height_m_q6 = lm_antenna_height_m_q6(own, &p->lent.map->db);
+    command->height_m_q6 = lm_antenna_height_m_q6(own, p->lent.map);
     *flight = (struct lm_sar_flight){.speed_mm_s = (uint32_t)own->ground_speed_mm_s,
                                      .track = own->track,
                                      .bearing = bearing,

@@ -72,7 +72,7 @@ static struct lm_platform platform_of(const struct lm_picture *p)
     const bool is_moving = own->velocity_quality != LM_NAV_DEAD;
     return (struct lm_platform){
         .position = lm_ownship_position(own),
-        .height_m_q10 = lm_m_q10_of_m_q6(lm_antenna_height_m_q6(own, &p->lent.map->db)),
+        .height_m_q10 = lm_m_q10_of_m_q6(lm_antenna_height_m_q6(own, p->lent.map)),
         .heading = own->heading,
         .track = own->track,
         .speed_mm_s = is_moving ? (uint32_t)own->ground_speed_mm_s : 0,

@@ -38,8 +38,8 @@ static void tell_position(struct lm_report *r, enum lm_report_item latitude,
 /* Slant range by the law of the radar's pictures. */
 static uint32_t slant_mm(const struct lm_unit *u)
 {
-    const int32_t above_m_q10 = lm_m_q10_of_m_q6(lm_antenna_height_m_q6(&u->ownship, &u->map.db)) -
-                                u->cursor_elevation_m_q10;
+    const int32_t above_m_q10 =
+        lm_m_q10_of_m_q6(lm_antenna_height_m_q6(&u->ownship, &u->map)) - u->cursor_elevation_m_q10;
     return lm_mm_of_m_q8(lm_slant_of_ground_m_q8(lm_m_q8_of_m(u->cursor.range_m), above_m_q10));
 }
 

@@ -105,7 +105,7 @@ static struct lm_track_scene scene_of(struct lm_unit *u)
         .environment = &u->weather.now,
         .malfunctions = &u->malfunctions.now,
         .platform = {.position = lm_ownship_position(own),
-                     .height_m_q10 = lm_m_q10_of_m_q6(lm_antenna_height_m_q6(own, &u->map.db)),
+                     .height_m_q10 = lm_m_q10_of_m_q6(lm_antenna_height_m_q6(own, &u->map)),
                      .heading = own->heading,
                      .track = own->track,
                      .speed_mm_s = is_moving ? (uint32_t)own->ground_speed_mm_s : 0,

@@ -123,6 +123,7 @@ void lm_unit_map_service(struct lm_unit_map *m, const struct lm_position *aircra
     if (m->is_usable) {
         if (aircraft) {
             lm_tile_cache_keep_around(&m->tiles, *aircraft);
+            lm_geoid_reader_service(&m->geoid, &m->tiles, *aircraft);
         }
         lm_chips_service(&m->chips, &m->tiles);
         lm_tile_cache_service(&m->tiles, now_us, TILE_READS_A_STEP);
@@ -131,5 +132,5 @@ void lm_unit_map_service(struct lm_unit_map *m, const struct lm_position *aircra
 
 uint32_t lm_unit_map_corrupt_records(const struct lm_unit_map *m)
 {
-    return m->tiles.count.corrupt + m->chips.count.corrupt;
+    return m->tiles.count.corrupt + m->chips.count.corrupt + m->geoid.corrupt;
 }

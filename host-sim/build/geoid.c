@@ -1,19 +1,24 @@
 #include "build/geoid.h"
 
+#include "fx/crc32c.h"
 #include "gis/gdal_start.h"
 #include "gis/length_unit.h"
 #include "hs/error.h"
 #include "hs/report.h"
 #include "resample/georef.h"
 
+#include <inttypes.h>
 #include <math.h>
 #include <ogr_srs_api.h>
+#include <stddef.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
 enum {
     SHIFT_LEAST = 20, /* 5.3' */
+    PAGE_SHIFT = 23,  /* 0.7 degrees */
+    PAGE_SIDE_LOG2 = PAGE_SHIFT + LM_GEOID_PAGE_LOG2,
     NODES2 = LM_GEOID_NODES_MAX * LM_GEOID_NODES_MAX
 };
 
@@ -213,4 +218,92 @@ int build_geoid_make(struct lm_geoid *g, const struct image_area *area, const ch
     }
     free(n);
     return result;
+}
+
+/* ---- pages ---- */
+
+static struct lm_geoid_pages_head lay_out_pages(const struct image_area *area)
+{
+    const int64_t south = area->south + IMAGE_BAM_QUARTER, north = area->north + IMAGE_BAM_QUARTER;
+    const uint32_t row0 = (uint32_t)(south >> PAGE_SIDE_LOG2);
+    const int64_t into_page = area->west & (((int64_t)1 << PAGE_SIDE_LOG2) - 1);
+    const uint32_t columns = (uint32_t)((into_page + area->width - 1) >> PAGE_SIDE_LOG2) + 1;
+    const uint32_t round = 1u << (32 - PAGE_SIDE_LOG2);
+    struct lm_geoid_pages_head head = {
+        .shift = PAGE_SHIFT,
+        .row0 = row0,
+        .rows = (uint32_t)((north - 1) >> PAGE_SIDE_LOG2) - row0 + 1,
+        .column0 = area->west >> PAGE_SIDE_LOG2,
+        .columns = columns < round ? columns : round,
+    };
+    head.crc = fx_crc32c(0, &head, offsetof(struct lm_geoid_pages_head, crc));
+    return head;
+}
+
+/* Make page number `i`. Adds to *off what is lost between nodes at most, *n is work space. */
+static int make_page(struct lm_geoid *page, const struct lm_geoid_pages_head *head, uint32_t i,
+                     const struct lm_geoid *whole, const char *source, struct nodes *n, double *off)
+{
+    *page = (struct lm_geoid){
+        .south = ((head->row0 + i / head->columns) << PAGE_SIDE_LOG2) - (1u << 30),
+        .west = (head->column0 + i % head->columns) << PAGE_SIDE_LOG2,
+        .latitude_shift = PAGE_SHIFT,
+        .longitude_shift = PAGE_SHIFT,
+        .rows = LM_GEOID_NODES_MAX,
+        .columns = LM_GEOID_NODES_MAX,
+    };
+    if (find_heights(n, page, 0, source) != 0) {
+        return -1;
+    }
+    for (size_t k = 0; k < n->count; k++) {
+        const struct lm_position at = {(uint32_t)image_bam(n->latitude[k]),
+                                       (uint32_t)image_bam(n->longitude[k])};
+        n->z[k] = fabs(n->z[k]) <= most_m ? n->z[k] : lm_geoid_height_m_q6(whole, at) / 64.0;
+    }
+    if (take_heights(page, n, source) != 0 || find_heights(n, page, 0.5, source) != 0) {
+        return -1;
+    }
+    for (size_t k = 0; k < n->count; k++) {
+        const struct lm_position at = {(uint32_t)image_bam(n->latitude[k]),
+                                       (uint32_t)image_bam(n->longitude[k])};
+        const double miss_m = fabs(n->z[k] - lm_geoid_height_m_q6(page, at) / 64.0);
+        *off = miss_m > *off ? miss_m : *off; /* not where the source has none */
+    }
+    page->crc = fx_crc32c(0, page, offsetof(struct lm_geoid, crc));
+    return 0;
+}
+
+int build_geoid_pages_make(struct image_bytes *section, const struct lm_geoid *g,
+                           const struct image_area *area, const char *source)
+{
+    *section = (struct image_bytes){0};
+    if (g->latitude_shift <= PAGE_SHIFT && g->longitude_shift <= PAGE_SHIFT) {
+        return 0;
+    }
+    const struct lm_geoid_pages_head head = lay_out_pages(area);
+    const uint32_t count = head.rows * head.columns;
+    const size_t bytes = sizeof head + count * sizeof(struct lm_geoid);
+    uint8_t *data = malloc(bytes);
+    struct nodes *n = malloc(sizeof *n);
+    double off = 0;
+    int result = data && n ? 0 : hs_error("--geoid-grid", NULL, "out of memory");
+    for (uint32_t i = 0; i < count && result == 0; i++) {
+        struct lm_geoid page;
+        result = make_page(&page, &head, i, g, source, n, &off);
+        memcpy(data + sizeof head + i * sizeof page, &page, sizeof page);
+    }
+    free(n);
+    if (result != 0) {
+        free(data);
+        return -1;
+    }
+    memcpy(data, &head, sizeof head);
+    *section = (struct image_bytes){data, bytes};
+    printf("geoid pages: %" PRIu32 " of 33 x 33 nodes, %.2f m off at most between them\n", count,
+           off);
+    hs_report_object("geoid_pages");
+    hs_report_put("pages", count);
+    hs_report_put("error_m", off);
+    hs_report_close();
+    return 0;
 }

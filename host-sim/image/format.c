@@ -14,6 +14,6 @@ const char *image_section_name(uint32_t type)
 {
     static const char *const names[LM_IMAGE_SECTION_TYPES] = {
         "unknown",    "CLASSES", "BANDS",  "DIRECTORY", "TILES", "MANIFEST", "TARGETS",
-        "SIGNATURES", "GEOID",   "DETAIL", "RADAR",     "SEAL",  "BUS"};
+        "SIGNATURES", "GEOID",   "DETAIL", "RADAR",     "SEAL",  "BUS",      "GEOID_PAGES"};
     return type < LM_IMAGE_SECTION_TYPES ? names[type] : names[0];
 }

@@ -356,8 +356,42 @@ static int read_geoid(struct image *image, struct image_findings *f)
         return -1;
     }
     if (!db_is_zero(g->reserved0, sizeof g->reserved0) ||
-        !db_is_zero(g->reserved1, sizeof g->reserved1)) {
+        !db_is_zero(g->reserved1, sizeof g->reserved1) || g->crc != 0) {
         image_find(f, s->offset, "unused bytes of section GEOID are not zero");
+    }
+    return 0;
+}
+
+static int read_geoid_pages(struct image *image, struct image_findings *f)
+{
+    const struct lm_image_section *s = image->sections[LM_IMAGE_GEOID_PAGES];
+    struct lm_geoid_pages *p = &image->db.geoid_pages;
+    struct lm_geoid_pages_head head;
+    if (!s) {
+        return 0;
+    }
+    memcpy(&head, image->bytes + s->offset, s->bytes < sizeof head ? s->bytes : sizeof head);
+    if (s->bytes < sizeof head || !lm_geoid_pages_are_sound(&head, s->bytes) ||
+        fx_crc32c(0, &head, offsetof(struct lm_geoid_pages_head, crc)) != head.crc) {
+        image_find(f, s->offset, "the head of section GEOID_PAGES does not hold");
+        return -1;
+    }
+    *p = (struct lm_geoid_pages){.offset = s->offset + sizeof head,
+                                 .shift = head.shift,
+                                 .row0 = head.row0,
+                                 .rows = head.rows,
+                                 .column0 = head.column0,
+                                 .columns = head.columns};
+    for (uint32_t i = 0; i < head.rows * head.columns; i++) {
+        struct lm_geoid page;
+        const uint64_t at = p->offset + i * (uint64_t)sizeof page;
+        memcpy(&page, image->bytes + at, sizeof page);
+        if (!lm_geoid_page_is_sound(p, i + 1, &page)) {
+            image_find(f, at, "page %" PRIu32 " of the geoid does not hold", i + 1);
+        } else if (!db_is_zero(page.reserved0, sizeof page.reserved0) ||
+                   !db_is_zero(page.reserved1, sizeof page.reserved1)) {
+            image_find(f, at, "unused bytes of page %" PRIu32 " of the geoid are not zero", i + 1);
+        }
     }
     return 0;
 }
@@ -448,7 +482,7 @@ int image_read_tables(struct image *image, struct image_findings *findings)
     }
     read_radar(image, findings);
     read_bus(image, findings);
-    if (read_geoid(image, findings) != 0) {
+    if (read_geoid(image, findings) != 0 || read_geoid_pages(image, findings) != 0) {
         return -1;
     }
     return read_targets_head(image, findings) == 0 && read_signatures_head(image, findings) == 0

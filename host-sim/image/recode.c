@@ -90,6 +90,7 @@ int image_recode(const struct image *image, const char *name, enum image_compres
     w.detail = bytes_of(image, LM_IMAGE_DETAIL);
     w.radar = bytes_of(image, LM_IMAGE_RADAR);
     w.bus = bytes_of(image, LM_IMAGE_BUS);
+    w.geoid_pages = bytes_of(image, LM_IMAGE_GEOID_PAGES);
     if (image->sections[LM_IMAGE_SEAL]) {
         hs_warn(name, "seal the new image", "its seal is left out");
     }

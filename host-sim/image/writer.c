@@ -307,9 +307,13 @@ static int finish(struct image_writer *w, const char *manifest)
         enum lm_image_section_type type;
         const struct image_bytes *bytes;
     } extras[] = {
-        {LM_IMAGE_TARGETS, &w->targets}, {LM_IMAGE_SIGNATURES, &w->signatures},
-        {LM_IMAGE_GEOID, &w->geoid},     {LM_IMAGE_DETAIL, &w->detail},
-        {LM_IMAGE_RADAR, &w->radar},     {LM_IMAGE_BUS, &w->bus},
+        {LM_IMAGE_TARGETS, &w->targets},
+        {LM_IMAGE_SIGNATURES, &w->signatures},
+        {LM_IMAGE_GEOID, &w->geoid},
+        {LM_IMAGE_DETAIL, &w->detail},
+        {LM_IMAGE_RADAR, &w->radar},
+        {LM_IMAGE_BUS, &w->bus},
+        {LM_IMAGE_GEOID_PAGES, &w->geoid_pages},
     };
     char *text = NULL;
     size_t bytes = 0;

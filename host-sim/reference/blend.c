@@ -3,6 +3,7 @@
 #include "reference/reference.h"
 
 #include <math.h>
+#include <pthread.h>
 #include <stdlib.h>
 
 enum { TEXELS = 64, STEPS = 128, ROWS_OF_TREES = 11, TREES_IN_A_ROW = 10 };
@@ -13,7 +14,7 @@ static double drawn(int a, int b, int c)
     return ldexp(fx_hash3((uint32_t)a, (uint32_t)b, (uint32_t)c), -32);
 }
 
-static double bend_at(int row, int column)
+static double bend(int row, int column)
 {
     const double turn = 2 * acos(-1.0);
     double sum = 0;
@@ -49,7 +50,7 @@ static double dome(int i, int j, int row, int column)
     return (0.96 + 0.16 * drawn(i, j, 5)) * (1 - 0.16 * x * x);
 }
 
-static double crown_at(int row, int column)
+static double crown(int row, int column)
 {
     double canopy = 0.8;
     for (int i = 0; i < ROWS_OF_TREES; i++) {
@@ -60,24 +61,44 @@ static double crown_at(int row, int column)
     return round(canopy / 0.923 * 256) / 256;
 }
 
+/* The pattern of every texel, worked out once. */
+static struct pattern {
+    double bend[TEXELS][TEXELS], crown[TEXELS][TEXELS];
+} pattern;
+
+static void grow(void)
+{
+    for (int i = 0; i < TEXELS * TEXELS; i++) {
+        pattern.bend[i / TEXELS][i % TEXELS] = bend(i / TEXELS, i % TEXELS);
+        pattern.crown[i / TEXELS][i % TEXELS] = crown(i / TEXELS, i % TEXELS);
+    }
+}
+
+static const struct pattern *grown(void)
+{
+    static pthread_once_t once = PTHREAD_ONCE_INIT;
+    pthread_once(&once, grow);
+    return &pattern;
+}
+
 /* What lies between four texels. */
-static double between(double (*at)(int row, int column), double row, double column)
+static double between(const double at[TEXELS][TEXELS], double row, double column)
 {
     const int r = (int)floor(row), c = (int)floor(column), after_r = (r + 1) % TEXELS,
               after_c = (c + 1) % TEXELS;
     const double v = row - r, u = column - c;
-    return (1 - v) * ((1 - u) * at(r, c) + u * at(r, after_c)) +
-           v * ((1 - u) * at(after_r, c) + u * at(after_r, after_c));
+    return (1 - v) * ((1 - u) * at[r][c] + u * at[r][after_c]) +
+           v * ((1 - u) * at[after_r][c] + u * at[after_r][after_c]);
 }
 
 double ref_grown_bend(double row, double column)
 {
-    return between(bend_at, row, column);
+    return between(grown()->bend, row, column);
 }
 
 double ref_grown_crown(double row, double column)
 {
-    return between(crown_at, row, column);
+    return between(grown()->crown, row, column);
 }
 
 static int class_of(uint16_t cell)

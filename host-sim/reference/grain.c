@@ -81,18 +81,23 @@ static double between(double first, double second, double way)
     return fmax(fmin(sum, 127), -128);
 }
 
-double ref_grain_power(double looks, uint32_t start_row, uint32_t start_column, double row,
-                       double column)
+void ref_grain_halves(double looks, double half_db[REF_GRAIN_HALVES])
+{
+    for (int i = 0; i < REF_GRAIN_HALVES; i++) {
+        half_db[i] = ref_grain_db(looks, (i - 8) / 2.0);
+    }
+}
+
+double ref_grain_power(const double half_db[REF_GRAIN_HALVES], uint32_t start_row,
+                       uint32_t start_column, double row, double column)
 {
     const uint32_t r = start_row + (uint32_t)row, c = start_column + (uint32_t)column;
     const double down = row - floor(row), along = column - floor(column);
     const double left = between(ref_grain(r, c), ref_grain(r + 1, c), down);
     const double right = between(ref_grain(r, c + 1), ref_grain(r + 1, c + 1), down);
-    /* Linear between z = -4, -3.5, .. 4. */
     const double halves = between(left, right, along) / 16, low = floor(halves);
-    const double low_db = ref_grain_db(looks, low / 2),
-                 next_db = ref_grain_db(looks, low / 2 + 0.5);
-    return pow(10, (low_db + (next_db - low_db) * (halves - low)) / 10);
+    const double *db = half_db + (int)low + 8;
+    return pow(10, (db[0] + (db[1] - db[0]) * (halves - low)) / 10);
 }
 
 void ref_leak_line(struct ref_leak *leak, double most_db, unsigned lines_max, unsigned line,

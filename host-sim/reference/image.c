@@ -13,8 +13,15 @@
 #include <string.h>
 
 enum { TILE_LOG2 = 6, POST_SHIFT_MAX = 4 };
-enum { SECTION_CLASSES = 1, SECTION_BANDS, SECTION_DIRECTORY, SECTION_TILES, SECTION_GEOID = 8 };
-enum { GEOID_BYTES = 2240, GEOID_SIDE = 33 };
+enum {
+    SECTION_CLASSES = 1,
+    SECTION_BANDS,
+    SECTION_DIRECTORY,
+    SECTION_TILES,
+    SECTION_GEOID = 8,
+    SECTION_GEOID_PAGES = 13
+};
+enum { GEOID_BYTES = 2240, GEOID_SIDE = 33, PAGES_HEAD = 64 };
 enum verdict { UNKNOWN = 0, GOOD, BAD };
 
 enum { HEADER_BYTES = 1024, HEADER_CRC_AT = 1020, TOP_AT = 60, SECTIONS_MAX = 32 };
@@ -156,9 +163,28 @@ static double steps(double degrees, unsigned shift, unsigned nodes)
     return fmin(fmax(degrees / ldexp(360, (int)shift - 32), 0), nodes - 1);
 }
 
+/* The page that holds a place, or NULL. */
+static const uint8_t *page_of(const struct ref_db *db, struct ref_place place)
+{
+    const uint64_t bytes = section_bytes(db, SECTION_GEOID_PAGES);
+    const uint8_t *head = bytes < PAGES_HEAD ? NULL : find_section(db, SECTION_GEOID_PAGES, bytes);
+    if (!head) {
+        return NULL;
+    }
+    const double side = ldexp(360, (int)(hs_get_u32(head) & 31) + 5 - 32);
+    const double row = floor((place.latitude_deg + 90) / side) - hs_get_u32(head + 4);
+    const double east = place.longitude_deg - hs_get_u32(head + 12) * side;
+    const double column = floor((east - 360 * floor(east / 360)) / side);
+    const double rows = hs_get_u32(head + 8), columns = hs_get_u32(head + 16);
+    const bool is_whole = PAGES_HEAD + rows * columns * GEOID_BYTES <= (double)bytes;
+    return is_whole && row >= 0 && row < rows && column < columns
+               ? head + PAGES_HEAD + (size_t)(row * columns + column) * GEOID_BYTES
+               : NULL;
+}
+
 double ref_db_geoid_m(const struct ref_db *db, struct ref_place place)
 {
-    const uint8_t *g = db->geoid;
+    const uint8_t *page = page_of(db, place), *g = page ? page : db->geoid;
     if (!g) {
         return db->geoid_m;
     }

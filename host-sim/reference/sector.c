@@ -28,8 +28,10 @@ void ref_line_speckle(double looks, uint32_t sweep, double grain_row, double pul
 {
     const struct lm_grain_place start = lm_grain_start(LM_GRAIN_SPECKLE, sweep);
     const double step = fmin(1, 1 / pulse_bins);
+    double half_db[REF_GRAIN_HALVES];
+    ref_grain_halves(looks, half_db);
     for (size_t i = 0; i < count; i++) {
-        speckle[i] = ref_grain_power(looks, start.row, start.column, grain_row, (double)i * step);
+        speckle[i] = ref_grain_power(half_db, start.row, start.column, grain_row, (double)i * step);
     }
 }
 

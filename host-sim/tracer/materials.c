@@ -2,37 +2,27 @@
 
 #include "hs/error.h"
 #include "hs/input_file.h"
-#include "hs/report.h"
+#include "tracer/surfaces.h"
 
 #include <errno.h>
 #include <math.h>
 #include <stdio.h>
-#include <stdlib.h>
 #include <string.h>
 
-/* X band. None of it is measured: values to look at pictures with, to be learned or replaced.
- * Permittivity of moist soil about 6 - i, of rubber about 3 (usual handbook values). The ground's
- * roughness is as high as the small-perturbation method holds, k s = 0.3 (Ulaby, Moore, Fung,
- * volume II, 12-5), and its spectrum exponential, as bare soils mostly have it (Oh, Sarabandi,
- * Ulaby, IEEE Trans. Geoscience and Remote Sensing 30, 1992). */
-static const struct reflect_material built_in[] = {
-    {"metal", 1, 1e7, 0.0002, 0.02, 0.9, 0.005, 0.03, 1, REFLECT_GAUSSIAN},
-    {"ground", 6, 1, 0.0015, 0.02, 0.3, 0.02, 0.03, 1, REFLECT_EXPONENTIAL},
-    {"rubber", 3, 0.1, 0.001, 0.02, 0.2, 0.02, 0.03, 1, REFLECT_GAUSSIAN},
-};
-enum { BUILT_IN = sizeof built_in / sizeof built_in[0], FILE_MAX = 256 };
+static const double pi = 3.14159265358979323846;
+
+enum { FILE_MAX = 256 };
 
 struct table {
     struct reflect_material rows[FILE_MAX];
     int count;
 };
 
-static const struct reflect_material *find(const struct reflect_material *rows, int count,
-                                           const char *name)
+static const struct reflect_material *find(const struct table *table, const char *name)
 {
-    for (int i = 0; i < count; i++) {
-        if (strcmp(rows[i].name, name) == 0) {
-            return &rows[i];
+    for (int i = 0; i < table->count; i++) {
+        if (strcmp(table->rows[i].name, name) == 0) {
+            return &table->rows[i];
         }
     }
     return NULL;
@@ -51,10 +41,13 @@ static const char *row_fault(const struct reflect_material *m)
           m->brilliance >= 0 && m->brilliance <= 1 && m->roughness > 0 && m->roughness <= 1)) {
         return "F_s, F_d and F_b are 0..1 and F_r is above 0 and at most 1";
     }
+    if (!(m->coat_m >= 0 && m->coat_m <= 1)) {
+        return "a coat is 0..1 m thick";
+    }
     return NULL;
 }
 
-/* The last word may be missing: Gaussian, as files had it before. */
+/* The last two words may be missing, as they were before: Gaussian, no coat. */
 static const char *read_spectrum(const char *word, struct reflect_material *m)
 {
     for (int i = 0; i < REFLECT_SPECTRA; i++) {
@@ -69,11 +62,12 @@ static const char *read_spectrum(const char *word, struct reflect_material *m)
 static const char *read_row(const char *line, struct reflect_material *m)
 {
     char extra, word[16] = "gaussian";
-    const int read = sscanf(line, "%31s %lf %lf %lf %lf %lf %lf %lf %lf %15s %c", m->name,
-                            &m->permittivity, &m->loss, &m->rms_height_m, &m->correlation_m,
-                            &m->specular, &m->roughness, &m->diffuse, &m->brilliance, word, &extra);
-    if (read != 9 && read != 10) {
-        return "expected a name, eight numbers and a spectrum";
+    const int read =
+        sscanf(line, "%31s %lf %lf %lf %lf %lf %lf %lf %lf %15s %lf %c", m->name, &m->permittivity,
+               &m->loss, &m->rms_height_m, &m->correlation_m, &m->specular, &m->roughness,
+               &m->diffuse, &m->brilliance, word, &m->coat_m, &extra);
+    if (read < 9 || read > 11) {
+        return "expected a name, eight numbers, a spectrum and the thickness of a coat";
     }
     const char *fault = read_spectrum(word, m);
     return fault ? fault : row_fault(m);
@@ -110,51 +104,49 @@ static int read_table(struct table *table, const char *path)
     return result;
 }
 
-int materials_for(const struct trace_records *r, const char *path, struct reflect_law *law)
+static int look_up(const struct table *table, const char *name, double wavelength_m,
+                   struct reflect_material *m)
+{
+    const struct reflect_material *row = find(table, name);
+    const struct surface *surface = row ? NULL : surface_find(name);
+    if (!row && !surface) {
+        return hs_error(
+            name,
+            "add it to the file of --materials, or rename it: landmass-target materials "
+            "lists those built in",
+            "a material that no table has");
+    }
+    if (surface) {
+        surface_doubt(surface, wavelength_m);
+    }
+    *m = row ? *row : surface_at(surface, wavelength_m);
+    return 0;
+}
+
+/* Small perturbation wants heights well below a wavelength (Ulaby, Moore, Fung, II, 12-5). */
+static void doubt_roughness(const struct reflect_law *law, const struct reflect_material *m)
+{
+    const double ks = 2 * pi / law->wavelength_m * m->rms_height_m;
+    if ((law->kind == REFLECT_SPM_HH || law->kind == REFLECT_SPM_VV) && ks > 0.31) {
+        hs_warn(m->name, "its returns by this law are too strong",
+                "too rough for small perturbation: k s is %.2g, which holds to 0.3", ks);
+    }
+}
+
+int materials_for(const struct trace_records *r, const char *path, const char *ground,
+                  struct reflect_law *law)
 {
     struct table table = {.count = 0};
     if (path && read_table(&table, path) != 0) {
         return -1;
     }
     for (uint32_t i = 0; i < r->material_count; i++) {
-        const char *name = r->materials[i];
-        const struct reflect_material *m = find(table.rows, table.count, name);
-        m = m ? m : find(built_in, BUILT_IN, name);
-        if (!m) {
-            return hs_error(name, "add it to the file of --materials",
-                            "a material of the model that no table has");
+        const bool is_ground = strcmp(r->materials[i], "ground") == 0;
+        const char *name = is_ground && ground ? ground : r->materials[i];
+        if (look_up(&table, name, law->wavelength_m, &law->materials[i]) != 0) {
+            return -1;
         }
-        law->materials[i] = *m;
+        doubt_roughness(law, &law->materials[i]);
     }
     return 0;
-}
-
-static void report_material(const struct reflect_material *m)
-{
-    hs_report_object(NULL);
-    hs_report_put("name", m->name);
-    hs_report_put("permittivity", m->permittivity);
-    hs_report_put("loss", m->loss);
-    hs_report_put("rms_height_m", m->rms_height_m);
-    hs_report_put("correlation_m", m->correlation_m);
-    hs_report_put("specular", m->specular);
-    hs_report_put("roughness", m->roughness);
-    hs_report_put("diffuse", m->diffuse);
-    hs_report_put("brilliance", m->brilliance);
-    hs_report_text("spectrum", reflect_spectrum_names[m->spectrum]);
-    hs_report_close();
-}
-
-void materials_print(void)
-{
-    puts("# NAME PERMITTIVITY LOSS RMS_HEIGHT_M CORRELATION_M F_S F_R F_D F_B SPECTRUM");
-    hs_report_array("materials");
-    for (int i = 0; i < BUILT_IN; i++) {
-        const struct reflect_material *m = &built_in[i];
-        report_material(m);
-        printf("%s %g %g %g %g %g %g %g %g %s\n", m->name, m->permittivity, m->loss,
-               m->rms_height_m, m->correlation_m, m->specular, m->roughness, m->diffuse,
-               m->brilliance, reflect_spectrum_names[m->spectrum]);
-    }
-    hs_report_close();
 }

@@ -31,6 +31,29 @@ double complex reflect_fresnel_vv(double complex permittivity, double theta1)
     return (p - q) / (p + q);
 }
 
+/* Phase and loss on the way through the coat, down and up. */
+static double complex through_coat(double complex permittivity, double coat_m, double wavelength_m,
+                                   double theta1)
+{
+    return cexp(-4 * pi * I * coat_m / wavelength_m * root_term(permittivity, theta1));
+}
+
+double complex reflect_coat_hh(double complex permittivity, double coat_m, double wavelength_m,
+                               double theta1)
+{
+    const double complex first = reflect_fresnel_hh(permittivity, theta1);
+    const double complex metal = -through_coat(permittivity, coat_m, wavelength_m, theta1);
+    return (first + metal) / (1 + first * metal);
+}
+
+double complex reflect_coat_vv(double complex permittivity, double coat_m, double wavelength_m,
+                               double theta1)
+{
+    const double complex first = reflect_fresnel_vv(permittivity, theta1);
+    const double complex metal = through_coat(permittivity, coat_m, wavelength_m, theta1);
+    return (first + metal) / (1 + first * metal);
+}
+
 double complex reflect_beta_hh(double complex permittivity, double theta1, double theta2,
                                double cos_theta3)
 {
@@ -71,11 +94,17 @@ double reflect_spectrum_at(const struct reflect_material *m, double kappa_square
     return m->spectrum == REFLECT_GAUSSIAN ? area * exp(-turn / 4) : 2 * area / pow(1 + turn, 1.5);
 }
 
+/* A coat follows the heights of the metal below it, which scatters. */
+static double complex half_space_of(const struct reflect_material *m)
+{
+    return m->coat_m > 0 ? -1e7 * I : m->permittivity - m->loss * I;
+}
+
 double reflect_spm_sigma0(const struct reflect_material *m, double wavelength_m, bool is_vv,
                           double theta1, double theta2, double theta4)
 {
     const double k = 2 * pi / wavelength_m;
-    const double complex permittivity = m->permittivity - m->loss * I;
+    const double complex permittivity = half_space_of(m);
     const double cos_theta3 = reflect_cos_theta3(theta1, theta2, theta4);
     const double complex beta = is_vv ? reflect_beta_vv(permittivity, theta1, theta2, cos_theta3)
                                       : reflect_beta_hh(permittivity, theta1, theta2, cos_theta3);
@@ -109,16 +138,17 @@ double reflect_raysar_diffuse(const struct reflect_material *m, double theta2)
     return m->diffuse * pow(fmax(cos(theta2), 0), m->brilliance);
 }
 
-static double complex fresnel(const struct reflect_material *m, bool is_vv, double theta1)
+static double complex fresnel(const struct reflect_law *law, const struct reflect_material *m,
+                              double theta1)
 {
     const double complex permittivity = m->permittivity - m->loss * I;
+    const bool is_vv = reflect_is_vv(law);
+    if (m->coat_m > 0) {
+        return (is_vv ? reflect_coat_vv : reflect_coat_hh)(permittivity, m->coat_m,
+                                                           law->wavelength_m, theta1);
+    }
     return is_vv ? reflect_fresnel_vv(permittivity, theta1)
                  : reflect_fresnel_hh(permittivity, theta1);
-}
-
-static double power_reflectivity(const struct reflect_material *m, bool is_vv, double theta1)
-{
-    return square(cabs(fresnel(m, is_vv, theta1)));
 }
 
 /* Share of the specular power that roughness leaves: exp(-(2 k s cos t)^2). */
@@ -151,12 +181,11 @@ struct reflect_shares reflect_record(const struct reflect_law *law, const struct
 {
     const struct reflect_material *m = &law->materials[t->material];
     const double t1 = (double)t->incidence_rad, t2 = (double)t->echo_rad, t4 = (double)t->turn_rad;
-    const bool is_vv = reflect_is_vv(law);
     if (law->kind == REFLECT_RAYSAR) {
         return shares(m->specular,
                       reflect_raysar_specular(m, t1, t2, t4) + reflect_raysar_diffuse(m, t2));
     }
-    double specular = power_reflectivity(m, is_vv, t1);
+    double specular = square(cabs(fresnel(law, m, t1)));
     if (law->kind == REFLECT_FRESNEL_HH || law->kind == REFLECT_FRESNEL_VV) {
         return shares(specular, specular * lobe(m, t1, t2, t4) + reflect_raysar_diffuse(m, t2));
     }
@@ -172,7 +201,7 @@ struct reflect_field reflect_field_of(const struct reflect_law *law, const struc
     if (law->kind == REFLECT_RAYSAR) {
         return (struct reflect_field){-sqrt(m->specular), diffuse};
     }
-    const double complex coefficient = fresnel(m, reflect_is_vv(law), t1);
+    const double complex coefficient = fresnel(law, m, t1);
     if (law->kind == REFLECT_FRESNEL_HH || law->kind == REFLECT_FRESNEL_VV) {
         return (struct reflect_field){coefficient, diffuse};
     }

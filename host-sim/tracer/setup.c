@@ -91,6 +91,8 @@ void setup_law_options(struct setup *s, struct hs_option *o)
         {"law", HS_WORD, &s->law, 0, 0, REFLECT_KIND_WORDS, "of reflection", false},
         {"materials", HS_INPUT, &s->materials, 0, 0, "FILE",
          "surfaces by name, in the form that `landmass-target materials` prints", false},
+        {"ground", HS_TEXT, &s->ground, 0, 0, "MATERIAL",
+         "what the level ground is: soil, grass, snow, concrete ... ; default `ground`", false},
     };
     memcpy(o, options, sizeof options);
 }
@@ -222,7 +224,7 @@ int setup_law(const struct setup *s, const struct trace_records *r, struct refle
     for (int kind = 0; kind < REFLECT_KINDS; kind++) {
         if (strcmp(s->law, reflect_kind_names[kind]) == 0) {
             law->kind = (enum reflect_kind)kind;
-            return materials_for(r, s->materials, law);
+            return materials_for(r, s->materials, s->ground, law);
         }
     }
     return hs_error("--law", "give raysar, fresnel-hh, fresnel-vv, spm-hh or spm-vv",

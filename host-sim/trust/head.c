@@ -34,7 +34,9 @@ const char *trust_section_name(uint32_t type)
                                                               [LM_IMAGE_DETAIL] = "DETAIL",
                                                               [LM_IMAGE_RADAR] = "RADAR",
                                                               [LM_IMAGE_SEAL] = "SEAL",
-                                                              [LM_IMAGE_BUS] = "BUS"};
+                                                              [LM_IMAGE_BUS] = "BUS",
+                                                              [LM_IMAGE_GEOID_PAGES] =
+                                                                  "GEOID_PAGES"};
     return type < LM_IMAGE_SECTION_TYPES && names[type] ? names[type] : "of another version";
 }
 

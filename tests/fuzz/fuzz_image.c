@@ -2,6 +2,7 @@
  * first byte of the input says which checksums are put right, the next eight where to look; the
  * rest is the image. */
 #include "fuzz.h"
+#include "lm/geoid_reader.h"
 #include "lm/scan_line.h"
 #include "memory_flash.h"
 #include "seal.h"
@@ -41,6 +42,18 @@ static void look_at_bands(struct lm_tile_cache *cache)
     lm_tile_cache_service(cache, 0, POLLS);
 }
 
+static void read_geoid_page(struct lm_tile_cache *cache, struct lm_position place)
+{
+    struct lm_geoid_reader *reader = calloc(1, sizeof *reader);
+    FUZZ_ASSERT(reader);
+    lm_geoid_reader_service(reader, cache, place);
+    lm_tile_cache_service(cache, 0, POLLS);
+    lm_geoid_reader_service(reader, cache, place);
+    const int32_t height_m_q6 = lm_geoid_reader_height_m_q6(reader, cache->db, place);
+    FUZZ_ASSERT(height_m_q6 >= -(1 << 20) && height_m_q6 <= 1 << 20);
+    free(reader);
+}
+
 static void use(const struct lm_db *db, struct fuzz_supply *s)
 {
     struct lm_tile_cache *cache = malloc(sizeof *cache);
@@ -56,6 +69,7 @@ static void use(const struct lm_db *db, struct fuzz_supply *s)
     if (lm_tile_cache_init(cache, db, pool, SLOTS * sizeof(struct lm_tile), POLLS) == LM_OK) {
         look_at_bands(cache);
         lm_tile_cache_keep_around(cache, there);
+        read_geoid_page(cache, there);
         lm_tile_cache_service(cache, 0, POLLS);
         for (uint32_t cell_mm = 500; cell_mm < 100000000; cell_mm *= 40) {
             sample(cache, line, centre, cell_mm);

@@ -41,6 +41,7 @@ struct builder {
     const struct tiny_spec *spec;
     const struct lm_classes *classes;
     struct lm_band bands[LM_DB_BANDS_MAX];
+    uint32_t first_band[LM_DB_LODS_MAX + 1]; /* of each level, and the end of the last */
     uint32_t band_count, entry_count, record_count;
     uint8_t level_count;
     int64_t south, north, west, east; /* of the wanted area, BAM; longitudes may pass 2^32 */
@@ -48,6 +49,7 @@ struct builder {
     struct ground **grounds;          /* of each tile */
     double land_sum_m;
     uint32_t land_count;
+    double meridian_m, parallel_m; /* radii at the centre */
 };
 
 static const struct lm_classes built_in = {
@@ -215,6 +217,7 @@ static int choose_bands(struct builder *b)
             return -1;
         }
         b->level_count = (uint8_t)(level + 1);
+        b->first_band[level + 1] = b->band_count;
         if (asked != 0 ? b->level_count == asked : tiles <= 4) {
             break;
         }
@@ -229,12 +232,17 @@ static struct tiny_place place_at(const struct builder *b, int64_t latitude_bam,
     struct tiny_place p;
     p.latitude_deg = (double)latitude_bam * deg - 90;
     p.longitude_deg = (double)(int32_t)(uint32_t)longitude_bam * deg;
-    const double sine = sin(b->spec->latitude_deg * rad), w = 1 - e2 * sine * sine;
-    const double meridian_m = semi_axis_m * (1 - e2) / (w * sqrt(w));
-    const double parallel_m = semi_axis_m / sqrt(w) * cos(b->spec->latitude_deg * rad);
-    p.north_m = (p.latitude_deg - b->spec->latitude_deg) * rad * meridian_m;
-    p.east_m = remainder(p.longitude_deg - b->spec->longitude_deg, 360) * rad * parallel_m;
+    p.north_m = (p.latitude_deg - b->spec->latitude_deg) * rad * b->meridian_m;
+    p.east_m = remainder(p.longitude_deg - b->spec->longitude_deg, 360) * rad * b->parallel_m;
     return p;
+}
+
+static void measure_earth(struct builder *b)
+{
+    const double rad = acos(-1.0) / 180;
+    const double sine = sin(b->spec->latitude_deg * rad), w = 1 - e2 * sine * sine;
+    b->meridian_m = semi_axis_m * (1 - e2) / (w * sqrt(w));
+    b->parallel_m = semi_axis_m / sqrt(w) * cos(b->spec->latitude_deg * rad);
 }
 
 static uint16_t pack_cell(struct tiny_cell cell)
@@ -308,11 +316,14 @@ static struct lm_tile_point *point(struct lm_tile *tile, uint32_t r, uint32_t c)
 /* The tile's directory entry, or -1. */
 static int64_t find_entry(const struct builder *b, uint8_t level, uint32_t row, uint32_t column)
 {
-    for (uint32_t i = 0; i < b->band_count; i++) {
+    for (uint32_t i = b->first_band[level]; i < b->first_band[level + 1]; i++) {
         const struct lm_band *band = &b->bands[i];
+        if (row - band->row0 >= band->rows) {
+            continue;
+        }
         const uint32_t wide = tile_width_log2(b, level, band->zone);
         const uint32_t along = (column - band->column0) & ((UINT32_C(1) << (32 - wide)) - 1);
-        if (band->lod == level && row - band->row0 < band->rows && along < band->columns) {
+        if (along < band->columns) {
             return band->entry0 + (row - band->row0) * band->columns + along;
         }
     }
@@ -507,7 +518,7 @@ static void make_cells(const struct builder *b, struct lm_tile *tile, struct gro
         g->tops[r][c] = find_top(tile, below, r, c);
         const double crest = crest_m(tile, &g->tops[r][c], r, c);
         struct tiny_cell cell = unpack_cell(g->cells[r][c]);
-        const uint8_t crest_code = nearest_height_code(b->classes, 10 * crest);
+        const uint8_t crest_code = crest > 0 ? nearest_height_code(b->classes, 10 * crest) : 0;
         if (cell.class_index != LM_DB_CLASS_NONE && crest_code > cell.height_code) {
             cell.height_code = crest_code;
         }
@@ -697,6 +708,7 @@ int tiny_image_build(struct tiny_image *image, const struct tiny_spec *spec)
     struct builder b = {.spec = spec, .classes = spec->classes ? spec->classes : &built_in};
     memset(image, 0, sizeof *image);
     choose_area(&b);
+    measure_earth(&b);
     int status = choose_bands(&b);
     if (status == 0) {
         status = make_tiles(&b);

@@ -76,15 +76,32 @@ static double hills(void *ctx, const struct tiny_place *p)
     return 100 + 50 * sin(p->east_m / 900);
 }
 
+/* An image of the caller's own. That of the last place is kept, since tests make many rigs at one
+ * place and an image takes as long as seconds of flight. */
+static struct tiny_image image_at(double latitude_deg, double longitude_deg)
+{
+    static struct tiny_image last;
+    static struct tiny_spec spec;
+    if (!last.bytes || spec.latitude_deg != latitude_deg || spec.longitude_deg != longitude_deg) {
+        tiny_image_free(&last);
+        spec = tiny_spec_at(latitude_deg, longitude_deg);
+        spec.cell = scene;
+        spec.elevation_m = hills;
+        spec.shift0 = 11;
+        spec.rows = spec.columns = 10;
+        assert_int_equal(tiny_image_build(&last, &spec), 0);
+    }
+    struct tiny_image copy = last;
+    copy.bytes = malloc(last.size);
+    assert_non_null(copy.bytes);
+    memcpy(copy.bytes, last.bytes, last.size);
+    return copy;
+}
+
 struct rig *make_rig_at(double latitude_deg, double longitude_deg)
 {
     struct rig *r = calloc(1, sizeof *r);
-    struct tiny_spec spec = tiny_spec_at(latitude_deg, longitude_deg);
-    spec.cell = scene;
-    spec.elevation_m = hills;
-    spec.shift0 = 11;
-    spec.rows = spec.columns = 10;
-    assert_int_equal(tiny_image_build(&r->image, &spec), 0);
+    r->image = image_at(latitude_deg, longitude_deg);
     const struct memory_board_parts parts = {.ctx = r,
                                              .receive = receive,
                                              .next_control = next_control,

@@ -28,8 +28,8 @@ SelectType=select/cons_tres
 SelectTypeParameters=CR_Core
 MpiDefault=none
 ReturnToService=2
-SlurmdTimeout=15
-InactiveLimit=20
+SlurmdTimeout=300
+InactiveLimit=60
 NodeName=n[1-{nodes}] NodeHostname={host} NodeAddr=127.0.0.1 Port=[{first}-{last}] CPUs=1 RealMemory=4000 State=UNKNOWN
 PartitionName=all Nodes=ALL Default=YES State=UP
 """
@@ -97,24 +97,63 @@ class Cluster:
             time.sleep(0.5)
         raise OSError("the nodes are not " + state)
 
-    def kill(self, name, how=signal.SIGKILL):
-        """End a daemon by the id that it wrote: head, n1, n2 ..., munge."""
+    def process(self, name):
+        """The id that a daemon wrote: head, n1, n2 ..., munge; None where it has none."""
         try:
             with open("%s/%s.pid" % (self.folder, name)) as file:
-                os.kill(int(file.read()), how)
-        except (FileNotFoundError, ProcessLookupError, ValueError):
+                return int(file.read())
+        except (FileNotFoundError, ValueError):
+            return None
+
+    def kill(self, name, how=signal.SIGTERM):
+        """End a daemon, and wait until it is gone."""
+        process = self.process(name)
+        try:
+            os.kill(process, how)
+            for _ in range(600):
+                os.kill(process, 0)
+                time.sleep(0.1)
+        except (TypeError, ProcessLookupError):
             pass
 
+    def restart_head(self):
+        """The head ends as a machine does that is shut down, which keeps its state, and begins again. A head that is cut
+        off instead forgets what it was told in the last seconds, and the srun of such a step waits for ever."""
+        self.kill("head")
+        self.head()
+        for _ in range(600):
+            try:
+                self.run("squeue", "-h")
+                return
+            except OSError:
+                time.sleep(0.1)
+        raise OSError("the head does not answer")
+
     def kill_node(self, name):
-        """A node dies with all that it runs: the daemon, and the processes of its steps."""
-        with open("%s/%s.pid" % (self.folder, name)) as file:
-            os.kill(int(file.read()), signal.SIGKILL)
+        """A node dies with all that it runs: the daemon, and the processes of its steps. The head is told at once, as by
+        a cluster's watchdog: how long Slurm takes to notice (SlurmdTimeout) is not what is tested."""
+        self.kill(name, signal.SIGKILL)
         for path in os.listdir("/proc"):
             try:
                 if path.isdigit() and ("SLURMD_NODENAME=" + name).encode() in self.environ_of(path):
                     os.kill(int(path), signal.SIGKILL)
             except OSError:
                 pass
+        self.run("scontrol", "update", "NodeName=" + name, "State=DOWN", "Reason=killed")
+
+    def told(self):
+        """What Slurm says: nodes, queue and the ends of its logs."""
+        texts = []
+        for words in (("sinfo", "-N", "-l"), ("squeue", "-l")):
+            try:
+                texts.append("%s:\n%s" % (words[0], self.run(*words)))
+            except (OSError, subprocess.TimeoutExpired) as error:
+                texts.append(str(error))
+        for name in sorted(os.listdir(self.folder)):
+            if name.endswith(".log"):
+                with open(self.folder + "/" + name, errors="replace") as file:
+                    texts.append("%s:\n%s" % (name, "".join(file.readlines()[-25:])))
+        return "\n".join(texts)
 
     def environ_of(self, process):
         """Of a process of this cluster alone."""
@@ -124,7 +163,6 @@ class Cluster:
 
     def end(self):
         for name in sorted(os.listdir(self.folder)):
-            if name.endswith(".pid") and name not in ("munge.pid",):
-                self.kill(name[:-4], signal.SIGTERM)
-        time.sleep(1)
-        self.kill("munge", signal.SIGTERM)
+            if name.endswith(".pid") and name != "munge.pid":
+                self.kill(name[:-4], signal.SIGKILL if name == "head.pid" else signal.SIGTERM)
+        self.kill("munge")

@@ -541,7 +541,9 @@ static int make_geoid(struct build_context *b, const struct build_settings *s)
                s->geoid_m != 0 ? "as told" : "assumed; --geoid-grid egm96 knows better");
         return 0;
     }
-    return build_geoid_make(&b->geoid, &area, s->geoid_grid);
+    return build_geoid_make(&b->geoid, &area, s->geoid_grid) == 0
+               ? build_geoid_pages_make(&b->geoid_pages, &b->geoid, &area, s->geoid_grid)
+               : -1;
 }
 
 static int open_rasters(struct build_context *b, const struct build_settings *s,
@@ -623,6 +625,7 @@ void build_job_close(struct build_context *b)
     resample_cover_close(&b->cover);
     terrain_close(&b->terrain);
     build_detail_free(&b->detail);
+    free((void *)b->geoid_pages.data);
 }
 
 /* The bus table as a record. Its name goes with it, and there is less room than in the text. */
@@ -845,6 +848,7 @@ int build_job_write(struct build_context *b, const struct build_settings *s,
     w.targets = (struct image_bytes){extras->targets_bytes, extras->targets_size};
     w.signatures = (struct image_bytes){extras->signatures_bytes, extras->signatures_size};
     w.geoid = (struct image_bytes){b->geoid.rows > 0 ? &b->geoid : NULL, sizeof b->geoid};
+    w.geoid_pages = b->geoid_pages;
     w.detail = (struct image_bytes){b->detail.section_bytes ? b->detail.section : NULL,
                                     b->detail.section_bytes};
     uint8_t radar[LM_RADAR_RECORD_BYTES];

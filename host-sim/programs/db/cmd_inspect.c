@@ -50,6 +50,14 @@ static void report_header(const struct image *image)
         hs_report_put("longitude_step_deg", ldexp(360, g->longitude_shift - 32));
         hs_report_close();
     }
+    if (image->db.geoid_pages.rows > 0) {
+        const struct lm_geoid_pages *p = &image->db.geoid_pages;
+        hs_report_object("geoid_pages");
+        hs_report_put("rows", p->rows);
+        hs_report_put("columns", p->columns);
+        hs_report_put("step_deg", ldexp(360, (int)p->shift - 32));
+        hs_report_close();
+    }
     hs_report_put("finest_cell_m", ldexp(IMAGE_METRES_PER_BAM, h->shift0));
     hs_report_put("finest_cell_shift", h->shift0);
 }
@@ -86,6 +94,11 @@ static void print_header(const struct image *image)
         const struct lm_geoid *g = &image->db.geoid;
         printf("geoid grid      %u x %u nodes, %.3f x %.3f degrees apart\n", g->rows, g->columns,
                ldexp(360, g->latitude_shift - 32), ldexp(360, g->longitude_shift - 32));
+    }
+    const struct lm_geoid_pages *pages = &image->db.geoid_pages;
+    if (pages->rows > 0) {
+        printf("geoid pages     %u x %u, nodes %.3f degrees apart\n", pages->rows, pages->columns,
+               ldexp(360, (int)pages->shift - 32));
     }
     printf("finest cell     %.3f m (shift0 %u)\n", ldexp(IMAGE_METRES_PER_BAM, h->shift0),
            h->shift0);

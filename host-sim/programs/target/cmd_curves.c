@@ -35,8 +35,8 @@ struct curve {
 static struct reflect_material sample_material(void)
 {
     const double k = 2 * pi / 0.03123;
-    return (struct reflect_material){"sample", 6,    0,   0.2 / k, 2 / k,
-                                     0.8,      0.02, 0.6, 1,       REFLECT_GAUSSIAN};
+    return (struct reflect_material){"sample", 6,   0, 0.2 / k,          2 / k, 0.8,
+                                     0.02,     0.6, 1, REFLECT_GAUSSIAN, 0};
 }
 
 /* The turn between source at theta1 and echo at theta2, which is negative on the source's side. */

@@ -164,7 +164,8 @@ struct lm_db {
     uint8_t sensor;       /* enum lm_sensor: band of the reflectivity */
     int32_t mean_elevation_m_q6; /* of the land in the image; within 2^20 */
     int32_t geoid_m_q6; /* mean sea level above the ellipsoid, in the image's area; within 2^20 */
-    struct lm_geoid geoid; /* the same at each place; rows 0: geoid_m_q6 everywhere */
+    struct lm_geoid geoid;             /* the same at each place; rows 0: geoid_m_q6 everywhere */
+    struct lm_geoid_pages geoid_pages; /* of finer grids; rows 0: the image has none */
     fx_bam_t centre_latitude, centre_longitude;
     char title[33]; /* the builder's; ends in a zero byte */
     struct lm_classes classes;

@@ -22,14 +22,15 @@ enum lm_image_section_type {
     LM_IMAGE_BANDS,
     LM_IMAGE_DIRECTORY,
     LM_IMAGE_TILES,
-    LM_IMAGE_MANIFEST,   /* the last one that every image must have */
-    LM_IMAGE_TARGETS,    /* optional */
-    LM_IMAGE_SIGNATURES, /* optional, as all that follow */
-    LM_IMAGE_GEOID,      /* grid of heights of mean sea level */
-    LM_IMAGE_DETAIL,     /* vector detail of tiles */
-    LM_IMAGE_RADAR,      /* radar table: lm/radar_record.h */
-    LM_IMAGE_SEAL,       /* cryptographic signature */
-    LM_IMAGE_BUS,        /* bus table: lm/bus_record.h */
+    LM_IMAGE_MANIFEST,    /* the last one that every image must have */
+    LM_IMAGE_TARGETS,     /* optional */
+    LM_IMAGE_SIGNATURES,  /* optional, as all that follow */
+    LM_IMAGE_GEOID,       /* grid of heights of mean sea level */
+    LM_IMAGE_DETAIL,      /* vector detail of tiles */
+    LM_IMAGE_RADAR,       /* radar table: lm/radar_record.h */
+    LM_IMAGE_SEAL,        /* cryptographic signature */
+    LM_IMAGE_BUS,         /* bus table: lm/bus_record.h */
+    LM_IMAGE_GEOID_PAGES, /* finer grids of them */
     LM_IMAGE_SECTION_TYPES
 };
 

@@ -8,6 +8,7 @@
 
 #include "lm/bus_record.h"
 #include "lm/chips.h"
+#include "lm/geoid_reader.h"
 #include "lm/radar.h"
 #include "lm/target.h"
 #include "lm/text.h"
@@ -30,6 +31,7 @@ struct lm_unit_map {
                       * status is LM_ERR_SENSOR */
     struct lm_db db;
     struct lm_tile_cache tiles;
+    struct lm_geoid_reader geoid;
     struct lm_target targets[LM_TARGETS_MAX];
     struct lm_signature signatures[LM_SIGNATURES_MAX];
     struct lm_target_set target_set; /* the entries of `targets` and `signatures` that were read */
@@ -71,7 +73,7 @@ struct lm_text lm_unit_map_refusal(const struct lm_unit_map *m);
 void lm_unit_map_service(struct lm_unit_map *m, const struct lm_position *aircraft,
                          uint64_t now_us);
 
-/* Number of tiles and chips that were read with a wrong CRC; only grows. */
+/* Number of tiles, chips and pages of the geoid that were read with a wrong CRC; only grows. */
 uint32_t lm_unit_map_corrupt_records(const struct lm_unit_map *m);
 
 #endif

@@ -9,6 +9,7 @@
 #include "build/towns.h"
 #include "hs/class_table.h"
 #include "image/ground.h"
+#include "image/writer.h"
 #include "lm/db.h"
 #include "lm/radar.h"
 #include "reflectivity/reflect.h"
@@ -53,7 +54,8 @@ struct build_context {
     struct build_counts counts;
     struct build_towns towns;
     struct build_facing facing;
-    struct lm_geoid geoid; /* rows 0: none */
+    struct lm_geoid geoid;          /* rows 0: none */
+    struct image_bytes geoid_pages; /* its section; data NULL: none */
 };
 
 enum { BUILD_HEIGHT_MAX_DM = 10000 }; /* 1,000 m: higher things are cut to it, and counted */

@@ -38,7 +38,7 @@ struct image_writer {
     struct image_stored_place *stored;      /* where each record lies in TILES; owned */
     struct image_detail_place *details;     /* and of each entry, where its detail lies; owned */
     struct image_bytes targets, signatures; /* the sections; data NULL for an image without */
-    struct image_bytes geoid, detail, radar, bus; /* the same */
+    struct image_bytes geoid, geoid_pages, detail, radar, bus; /* the same */
     enum image_compression compression; /* of tile records; the caller may set it before the end */
     bool has_borders;                   /* likewise: tiles come with the borders that they keep */
     uint32_t tiles_size;                /* of TILES, in units of LM_DB_PLACE_BYTES */

@@ -25,6 +25,7 @@
 enum {
     REF_SPECKLE_SLICES = 1024,
     REF_GRAIN_VALUES = 256,
+    REF_GRAIN_HALVES = 17,
     REF_GUARD_CELLS = 4,
     REF_LINE_MAX = 4096 + REF_GUARD_CELLS, /* bins of a patch's line */
     REF_COARSE_CELLS = 128
@@ -252,9 +253,13 @@ void ref_grain_table(double looks, double table_db[REF_GRAIN_VALUES]);
  * that of lm/grain.h, by definition; its statistics are tested by themselves. */
 int ref_grain(uint32_t row, uint32_t column);
 
-/* Power of the speckle of so many looks at a place between rows and columns of the field. */
-double ref_grain_power(double looks, uint32_t start_row, uint32_t start_column, double row,
-                       double column);
+/* ref_grain_db at z = -4, -3.5, .. 4. */
+void ref_grain_halves(double looks, double half_db[REF_GRAIN_HALVES]);
+
+/* Power of the speckle at a place between rows and columns of the field: linear in decibels
+ * between the numbers of ref_grain_halves. */
+double ref_grain_power(const double half_db[REF_GRAIN_HALVES], uint32_t start_row,
+                       uint32_t start_column, double row, double column);
 
 /* The running mean of the ground: zero before its first line. */
 struct ref_leak {

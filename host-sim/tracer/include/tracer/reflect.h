@@ -27,6 +27,7 @@ struct reflect_material {
     double specular, roughness; /* F_s 0..1, F_r > 0 */
     double diffuse, brilliance; /* F_d 0..1, F_b 0..1 */
     enum reflect_spectrum spectrum;
+    double coat_m; /* 0: nothing below it. Else thickness of a coat on metal, such as paint */
 };
 
 /* ---- the formulas ---- */
@@ -34,6 +35,13 @@ struct reflect_material {
 /* Fresnel's coefficients, eq. (5) and (6). */
 double complex reflect_fresnel_hh(double complex permittivity, double theta1);
 double complex reflect_fresnel_vv(double complex permittivity, double theta1);
+
+/* The same of a coat on metal: what its two faces send back together, with all that goes to and fro
+ * between them. */
+double complex reflect_coat_hh(double complex permittivity, double coat_m, double wavelength_m,
+                               double theta1);
+double complex reflect_coat_vv(double complex permittivity, double coat_m, double wavelength_m,
+                               double theta1);
 
 /* Polarisation factors of the small perturbation method. eq. (8), and eq. (9) as the theory has it:
  * the paper prints a product of two fractions where there is one fraction with a difference above,

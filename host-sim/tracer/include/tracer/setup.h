@@ -20,7 +20,7 @@ struct setup {
     long cells, rays_per_cell, bounces, threads;
     bool has_no_ground;
     /* the law */
-    const char *law, *materials;
+    const char *law, *materials, *ground;
     /* the chip */
     double resolution_m, range_db;
     long ratio, looks, seed;
@@ -30,7 +30,7 @@ enum {
     SETUP_MODEL_OPTIONS = 5,
     SETUP_RAY_OPTIONS = 4,
     SETUP_TRACE_OPTIONS = SETUP_RAY_OPTIONS + 4,
-    SETUP_LAW_OPTIONS = 2,
+    SETUP_LAW_OPTIONS = 3,
     SETUP_CHIP_OPTIONS = SETUP_LAW_OPTIONS + 5,
     SETUP_OPTIONS = SETUP_MODEL_OPTIONS + SETUP_TRACE_OPTIONS + SETUP_CHIP_OPTIONS
 };

@@ -4,7 +4,7 @@
 #include "hs/angle.h"
 #include "hs/rng.h"
 #include "lm/db.h"
-#include "lm/geoid.h"
+#include "lm/geoid_reader.h"
 #include "lm/image.h"
 #include "memory_flash.h"
 #include "reference/reference.h"
@@ -91,8 +91,8 @@ static void build(struct tiny_image *image)
 }
 
 /* The tiny image with a section more: behind the others, in the next free entry of the header. */
-static uint8_t *with_section(const struct tiny_image *tiny, const void *bytes, uint64_t length,
-                             size_t *size)
+static uint8_t *with_section_of(uint32_t type, const struct tiny_image *tiny, const void *bytes,
+                                uint64_t length, size_t *size)
 {
     const uint64_t at = (tiny->size + 63) / 64 * 64;
     uint8_t *image = calloc(1, at + length);
@@ -102,12 +102,18 @@ static uint8_t *with_section(const struct tiny_image *tiny, const void *bytes, u
     struct lm_image_header h;
     memcpy(&h, image, sizeof h);
     h.sections[h.section_count++] =
-        (struct lm_image_section){LM_IMAGE_GEOID, fx_crc32c(0, bytes, length), at, length};
+        (struct lm_image_section){type, fx_crc32c(0, bytes, length), at, length};
     h.image_bytes = at + length;
     h.crc = fx_crc32c(0, &h, sizeof h - sizeof h.crc);
     memcpy(image, &h, sizeof h);
     *size = at + length;
     return image;
+}
+
+static uint8_t *with_section(const struct tiny_image *tiny, const void *bytes, uint64_t length,
+                             size_t *size)
+{
+    return with_section_of(LM_IMAGE_GEOID, tiny, bytes, length, size);
 }
 
 static int open_with(struct lm_db *db, struct memory_flash *flash, const struct tiny_image *tiny,
@@ -159,4 +165,199 @@ TEST(the_reference_reads_the_same_grid)
     ref_db_close(&ref);
     free(image);
     tiny_image_free(&tiny);
+}
+
+/* ---- pages ---- */
+
+enum { PAGE_SHIFT = 20, SIDE_LOG2 = 25, ROWS = 3, COLUMNS = 4, SLOTS = 24, POLLS = 100 };
+
+/* Three rows of four pages about 46 N and the antimeridian. */
+struct pages {
+    struct lm_geoid_pages_head head;
+    struct lm_geoid page[ROWS * COLUMNS];
+};
+
+/* A surface that is continuous across pages and round the Earth. */
+static double waves_m(double latitude_deg, double longitude_deg)
+{
+    const double radian = 3.14159265358979 / 180;
+    return 60 * sin(9 * latitude_deg * radian) * cos(8 * longitude_deg * radian);
+}
+
+static void seal_page(struct lm_geoid *page)
+{
+    page->crc = fx_crc32c(0, page, offsetof(struct lm_geoid, crc));
+}
+
+static void seal_head(struct lm_geoid_pages_head *h)
+{
+    h->crc = fx_crc32c(0, h, offsetof(struct lm_geoid_pages_head, crc));
+}
+
+static struct pages *make_pages(void)
+{
+    struct pages *p = calloc(1, sizeof *p);
+    const uint32_t row0 = (hs_bam(46) + (1u << 30)) >> SIDE_LOG2, round = 1u << (32 - SIDE_LOG2);
+    p->head = (struct lm_geoid_pages_head){.shift = PAGE_SHIFT,
+                                           .row0 = row0,
+                                           .rows = ROWS,
+                                           .column0 = round / 2 - 2,
+                                           .columns = COLUMNS};
+    seal_head(&p->head);
+    for (uint32_t i = 0; i < ROWS * COLUMNS; i++) {
+        struct lm_geoid *g = &p->page[i];
+        *g = (struct lm_geoid){.south = ((row0 + i / COLUMNS) << SIDE_LOG2) - (1u << 30),
+                               .west = (p->head.column0 + i % COLUMNS) << SIDE_LOG2,
+                               .latitude_shift = PAGE_SHIFT,
+                               .longitude_shift = PAGE_SHIFT,
+                               .rows = 33,
+                               .columns = 33};
+        for (uint32_t k = 0; k < 33 * 33; k++) {
+            const uint32_t latitude = g->south + ((k / 33) << PAGE_SHIFT);
+            const uint32_t longitude = g->west + ((k % 33) << PAGE_SHIFT);
+            g->height_m_q6[k / 33][k % 33] =
+                (int16_t)lround(64 * waves_m(hs_degrees(latitude), hs_degrees(longitude)));
+        }
+        seal_page(g);
+    }
+    return p;
+}
+
+struct paged {
+    struct tiny_image tiny;
+    struct pages *pages;
+    uint8_t *image;
+    size_t size;
+    struct memory_flash flash;
+    struct lm_db db;
+    struct lm_tile_cache tiles;
+    struct lm_geoid_reader reader;
+    struct lm_tile pool[SLOTS];
+};
+
+static struct paged *open_paged(void (*spoil)(struct pages *))
+{
+    struct paged *p = calloc(1, sizeof *p);
+    build(&p->tiny);
+    p->pages = make_pages();
+    if (spoil) {
+        spoil(p->pages);
+    }
+    p->image =
+        with_section_of(LM_IMAGE_GEOID_PAGES, &p->tiny, p->pages, sizeof *p->pages, &p->size);
+    memory_flash_open(&p->flash, p->image, p->size);
+    assert_int_equal(lm_db_open(&p->db, &p->flash.port, POLLS), LM_OK);
+    assert_int_equal(lm_tile_cache_init(&p->tiles, &p->db, p->pool, sizeof p->pool, POLLS), LM_OK);
+    return p;
+}
+
+static void close_paged(struct paged *p)
+{
+    tiny_image_free(&p->tiny);
+    free(p->pages);
+    free(p->image);
+    free(p);
+}
+
+static double fly_to(struct paged *p, struct lm_position place)
+{
+    for (int i = 0; i < 10; i++) {
+        lm_geoid_reader_service(&p->reader, &p->tiles, place);
+        lm_tile_cache_service(&p->tiles, 0, 4);
+    }
+    return lm_geoid_reader_height_m_q6(&p->reader, &p->db, place) / 64.0;
+}
+
+TEST(a_page_is_read_where_the_aircraft_is_on_both_sides_of_the_antimeridian)
+{
+    struct paged *p = open_paged(NULL);
+    struct ref_db ref;
+    struct hs_rng rng;
+    hs_rng_seed(&rng, 4);
+    assert_int_equal(ref_db_open_memory(&ref, p->image, p->size, "image"), 0);
+    for (int i = 0; i < 3000; i++) {
+        const struct lm_geoid *south_west = &p->pages->page[0];
+        const struct lm_position place = {south_west->south + hs_rng_below(&rng, ROWS << SIDE_LOG2),
+                                          south_west->west +
+                                              hs_rng_below(&rng, COLUMNS << SIDE_LOG2)};
+        const struct ref_place there = {hs_degrees(place.latitude), hs_degrees(place.longitude)};
+        const double height_m = fly_to(p, place);
+        assert_true(fabs(height_m - waves_m(there.latitude_deg, there.longitude_deg)) < 0.1);
+        assert_true(fabs(height_m - ref_db_geoid_m(&ref, there)) < 0.05);
+    }
+    assert_int_equal(p->reader.corrupt, 0);
+    ref_db_close(&ref);
+    close_paged(p);
+}
+
+TEST(until_a_page_is_there_and_where_there_is_none_the_image_s_height_counts)
+{
+    struct paged *p = open_paged(NULL);
+    const struct lm_position on = {p->pages->page[5].south + 7, p->pages->page[5].west + 9};
+    p->db.geoid_m_q6 = 48 * 64;
+    assert_int_equal(lm_geoid_reader_height_m_q6(&p->reader, &p->db, on), 48 * 64);
+    lm_geoid_reader_service(&p->reader, &p->tiles, on);
+    assert_int_equal(lm_geoid_reader_height_m_q6(&p->reader, &p->db, on), 48 * 64);
+    assert_true(fly_to(p, on) != 48);
+    assert_true(fly_to(p, (struct lm_position){on.latitude, 0}) == 48);
+    assert_true(fly_to(p, (struct lm_position){0, on.longitude}) == 48);
+    assert_true(fly_to(p, (struct lm_position){FX_BAM_90, on.longitude}) == 48);
+    const uint32_t reads = p->flash.reads;
+    assert_true(fly_to(p, on) != 48); /* it is still in memory */
+    assert_int_equal(p->flash.reads, reads);
+    close_paged(p);
+}
+
+static void exchange_two(struct pages *p)
+{
+    const struct lm_geoid first = p->page[5];
+    p->page[5] = p->page[6];
+    p->page[6] = first;
+}
+
+static void flip_a_bit(struct pages *p)
+{
+    p->page[5].height_m_q6[3][4] ^= 1;
+}
+
+static void shorten(struct pages *p)
+{
+    p->page[5].rows = 20;
+    seal_page(&p->page[5]);
+}
+
+TEST(a_page_that_is_damaged_or_another_is_counted_once_and_not_used)
+{
+    void (*const spoils[])(struct pages *) = {exchange_two, flip_a_bit, shorten};
+    for (int i = 0; i < 3; i++) {
+        struct paged *p = open_paged(spoils[i]);
+        const struct lm_position on = {p->pages->page[4].south + 7,
+                                       p->pages->page[4].west + (1u << SIDE_LOG2) + 9};
+        p->db.geoid_m_q6 = 48 * 64;
+        assert_true(fly_to(p, on) == 48);
+        assert_true(fly_to(p, on) == 48);
+        assert_int_equal(p->reader.corrupt, 1);
+        close_paged(p);
+    }
+}
+
+TEST(a_head_of_pages_that_cannot_be_is_refused)
+{
+    const struct lm_geoid_pages_head good = {
+        .shift = 23, .row0 = 1, .rows = 7, .column0 = 15, .columns = 16};
+    const uint64_t bytes = 64 + 7 * 16 * 2240;
+    assert_true(lm_geoid_pages_are_sound(&good, bytes));
+    assert_false(lm_geoid_pages_are_sound(&good, bytes - 2240));
+    for (int field = 0; field < 5; field++) {
+        static const uint32_t bad[5][4] = {{0, 15, 27, UINT32_MAX},
+                                           {2, 8, UINT32_MAX, 1u << 31},
+                                           {0, 8, 9, UINT32_MAX},
+                                           {16, 17, 99, UINT32_MAX},
+                                           {0, 17, 32, UINT32_MAX}};
+        for (int i = 0; i < 4; i++) {
+            struct lm_geoid_pages_head h = good;
+            memcpy((uint8_t *)&h + 4 * field, &bad[field][i], 4);
+            assert_false(lm_geoid_pages_are_sound(&h, 64 + (uint64_t)h.rows * h.columns * 2240));
+        }
+    }
 }

@@ -113,19 +113,32 @@ static void to_patch(const struct scene *s, struct ref_place place, double *righ
     *beyond = distance * cos((azimuth - s->look_deg) * degree);
 }
 
-/* u and v of the middle of a cell, in half sides of an item that is as wide as a cell at least. */
-static void in_item(const struct scene *s, const struct lm_detail_item *item, uint32_t line,
-                    uint32_t cell, double *u, double *v)
+/* An item on the patch: its middle in metres, its turn from the look, and its half sides, which
+ * are half a cell at least. */
+struct outline {
+    double right_m, beyond_m, sine, cosine, half_length_m, half_width_m;
+};
+
+static struct outline outline_of(const struct scene *s, const struct lm_detail_item *item)
 {
-    double x0, y0;
-    to_patch(s, item_place(s, item), &x0, &y0);
+    const double turn = item->turn * (2 * pi / 65536) - s->look_deg * degree;
+    struct outline o = {.sine = sin(turn),
+                        .cosine = cos(turn),
+                        .half_length_m = fmax(item->length_dm / 20.0, s->cell_m / 2),
+                        .half_width_m = fmax(item->width_dm / 20.0, s->cell_m / 2)};
+    to_patch(s, item_place(s, item), &o.right_m, &o.beyond_m);
+    return o;
+}
+
+/* u and v of the middle of a cell, in half sides of an item. */
+static void in_item(const struct scene *s, const struct outline *o, uint32_t line, uint32_t cell,
+                    double *u, double *v)
+{
     const double y = ((int)cell - GUARD + 0.5 - CELLS / 2.0) * s->cell_m;
     const double x = (line + 0.5 - s->lines / 2.0) * s->cell_m * (s->range_m + y) / s->range_m;
-    const double turn = item->turn * (2 * pi / 65536) - s->look_deg * degree;
-    const double a = fmax(item->length_dm / 20.0, s->cell_m / 2),
-                 b = fmax(item->width_dm / 20.0, s->cell_m / 2);
-    *u = ((x - x0) * sin(turn) + (y - y0) * cos(turn)) / a;
-    *v = ((x - x0) * cos(turn) - (y - y0) * sin(turn)) / b;
+    const double right_m = x - o->right_m, beyond_m = y - o->beyond_m;
+    *u = (right_m * o->sine + beyond_m * o->cosine) / o->half_length_m;
+    *v = (right_m * o->cosine - beyond_m * o->sine) / o->half_width_m;
 }
 
 /* Puts the item into the middle of the patch, or up to `off` of a tile's side aside. */
@@ -189,11 +202,12 @@ TEST(cells_whose_middle_is_inside_are_drawn_and_no_others)
         const double least = fmin(fmax(item->length_dm / 20.0, s.cell_m / 2),
                                   fmax(item->width_dm / 20.0, s.cell_m / 2));
         const double unsure = 0.03 + 0.08 / least;
+        const struct outline outline = outline_of(&s, item);
         for (uint32_t line = 0; line < s.lines; line++) {
             draw(&s, line);
             for (uint32_t i = 0; i < CELLS + GUARD; i++) {
                 double u, v;
-                in_item(&s, item, line, i, &u, &v);
+                in_item(&s, &outline, line, i, &u, &v);
                 const double off = fmax(fabs(u), fabs(v)) - 1;
                 const bool is_drawn = (ground.cell[i] >> 4 & 15) == TINY_STRUCTURE;
                 if (fabs(off) > unsure) {
@@ -258,12 +272,13 @@ TEST(a_gable_is_highest_along_its_ridge)
     lm_detail_patch_add(&patch, &reader, &map.tiles, &s.g, FX_BAM_DEG(6));
     lm_detail_patch_close(&patch);
     const uint16_t *height_dm = map.db.classes.height_dm;
+    const struct outline outline = outline_of(&s, &house);
     int judged = 0;
     for (uint32_t line = 0; line < s.lines; line++) {
         draw(&s, line);
         for (uint32_t i = 0; i < CELLS + GUARD; i++) {
             double u, v;
-            in_item(&s, &house, line, i, &u, &v);
+            in_item(&s, &outline, line, i, &u, &v);
             if (fmax(fabs(u), fabs(v)) < 0.97) {
                 const double wanted = 15 * (1 - 0.4 * fabs(v)),
                              is = height_dm[ground.cell[i] & 15] / 10.0;
@@ -355,6 +370,7 @@ TEST(a_surface_covers_the_classes_that_it_names)
         put_in_patch(&s, &strip, 0.1);
         add_alone(&s, &strip);
         lm_detail_patch_close(&patch);
+        const struct outline outline = outline_of(&s, &strip);
         for (uint32_t line = 0; line < s.lines; line++) {
             static const struct lm_ground_path nowhere;
             for (uint32_t i = 0; i < CELLS + GUARD; i++) {
@@ -365,7 +381,7 @@ TEST(a_surface_covers_the_classes_that_it_names)
             lm_detail_patch_draw(&patch, line, &nowhere, &ground, s.g.cells);
             for (uint32_t i = 0; i < CELLS + GUARD; i++) {
                 double u, v;
-                in_item(&s, &strip, line, i, &u, &v);
+                in_item(&s, &outline, line, i, &u, &v);
                 const double off = fmax(fabs(u), fabs(v)) - 1;
                 assert_int_equal(ground.elevation_m_q14[i], i);
                 if (i % 3 == 0) {

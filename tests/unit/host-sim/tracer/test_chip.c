@@ -24,7 +24,7 @@ static struct reflect_law plain_law(void)
     struct reflect_law law = {.kind = REFLECT_RAYSAR, .wavelength_m = TRACE_WAVELENGTH_M};
     for (int i = 0; i < TRACE_MATERIALS_MAX; i++) {
         law.materials[i] =
-            (struct reflect_material){"plain", 2, 0, 0, 0, 0.5, 1, 0.25, 0, REFLECT_GAUSSIAN};
+            (struct reflect_material){"plain", 2, 0, 0, 0, 0.5, 1, 0.25, 0, REFLECT_GAUSSIAN, 0};
     }
     return law;
 }
@@ -121,7 +121,7 @@ static float *picture_of(const char *name, double azimuth_deg, double depression
     assert_int_equal(scene_open(&s, &m, trace_ground_half_m(&o.grid, depression_deg), name), 0);
     assert_int_equal(trace_run(&s, &o, name, r, NULL), 0);
     struct reflect_law law = {.kind = REFLECT_RAYSAR, .wavelength_m = TRACE_WAVELENGTH_M};
-    assert_int_equal(materials_for(r, NULL, &law), 0);
+    assert_int_equal(materials_for(r, NULL, NULL, &law), 0);
     float *picture = malloc(CELLS * CELLS * sizeof *picture);
     assert_int_equal(accumulate(r, &law, picture), 0);
     mesh_free(&m);

@@ -64,8 +64,8 @@ TEST(way_out_and_way_back_may_be_exchanged)
     }
 }
 
-static const struct reflect_material soil = {"soil", 6,    1,   0.001, 0.01,
-                                             0.4,    0.02, 0.3, 1,     REFLECT_GAUSSIAN};
+static const struct reflect_material soil = {"soil",           6, 1, 0.001, 0.01, 0.4, 0.02, 0.3, 1,
+                                             REFLECT_GAUSSIAN, 0};
 
 /* Ulaby's sigma0 of a Gaussian surface, 4 k^4 s^2 l^2 cos^4 t |alpha|^2 exp(-(k l sin t)^2). */
 TEST(small_perturbation_is_the_textbooks_in_backscatter)
@@ -109,8 +109,8 @@ TEST(a_spectrum_is_the_transform_of_its_autocorrelation)
 /* By hand: the built-in ground at 75 degrees from the vertical. */
 TEST(exponential_ground_returns_something_at_flat_angles)
 {
-    struct reflect_material ground = {"ground", 6,    1,    0.0015, 0.02,
-                                      0.3,      0.02, 0.03, 1,      REFLECT_EXPONENTIAL};
+    struct reflect_material ground = {
+        "ground", 6, 1, 0.0015, 0.02, 0.3, 0.02, 0.03, 1, REFLECT_EXPONENTIAL, 0};
     const double t = rad(75);
     const double flat_db = 10 * log10(reflect_spm_sigma0(&ground, 0.03123, true, t, t, 0));
     ground.spectrum = REFLECT_GAUSSIAN;

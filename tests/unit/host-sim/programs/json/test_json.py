@@ -666,8 +666,12 @@ def target_curves():
 
 def target_materials():
     document, text = run("target", "materials")
-    shown = [line.split() for line in text.splitlines() if not line.startswith("#")]
-    assert [[m["name"], *(v if isinstance(v, str) else "%g" % v for v in list(m.values())[1:])] for m in document["report"]["materials"]] == shown
+    shown = [line.split("#")[0].split() for line in text.splitlines() if not line.startswith("#")]
+    assert [[v if isinstance(v, str) else "%.12g" % v for v in list(m.values())[:11]] for m in document["report"]["materials"]] == shown
+    document, text = run("target", "materials", "--bands")
+    for m in document["report"]["materials"]:
+        shown = find("^" + m["name"] + r" +\S+ +(\S+) +\S+ +(\S+) +\S+ +(\S+) +\S+ +(\S+)$", text)
+        assert all(near(band["reflection_db"], value, 0.01) for band, value in zip(m["bands"], shown))
 
 
 def target_bench():

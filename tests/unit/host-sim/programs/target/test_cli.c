@@ -91,12 +91,40 @@ TEST(rough_ground_has_a_shadow)
               "print far / n, least; exit !(far / n > 1e-3 && least < 0.3 * far / n) }' spm.csv"),
         0);
     assert_int_equal(run("materials > materials.txt"), 0);
-    assert_int_equal(shell("grep -q '^ground .* exponential$' materials.txt"), 0);
+    assert_int_equal(shell("grep -q '^ground .* exponential 0 #' materials.txt"), 0);
     assert_int_equal(run("render --model tank --materials materials.txt --csv again.csv"), 0);
     assert_int_equal(shell("sed -i 's/exponential/fractal/' materials.txt"), 0);
     assert_int_equal(run("render --model tank --materials materials.txt --csv again.csv 2>errors"),
                      1);
-    assert_int_equal(shell("grep -q 'materials.txt line 3: a spectrum is' errors"), 0);
+    assert_int_equal(shell("grep -q 'materials.txt line 7: a spectrum is' errors"), 0);
+}
+
+/* Snow reflects less of what comes to it than wet soil: what stands on it has a weaker dihedral. */
+TEST(ground_may_be_named)
+{
+    assert_int_equal(run("render --model dihedral --law fresnel-hh --rays 1 --ground wet-soil "
+                         "--csv soil.csv"),
+                     0);
+    assert_int_equal(run("render --model dihedral --law fresnel-hh --rays 1 --ground snow "
+                         "--csv snow.csv"),
+                     0);
+    assert_int_equal(
+        shell("paste -d, soil.csv snow.csv | awk -F, '{ n = NF / 2; for (i = 1; i <= n; "
+              "i++) { soil += $i * $i; snow += $(i + n) * $(i + n) } } "
+              "END { exit !(soil > 1.4 * snow) }'"),
+        0);
+    assert_int_equal(run("render --model dihedral --ground cheese --csv x.csv 2>errors"), 1);
+    assert_int_equal(shell("grep -q 'cheese: a material that no table has' errors"), 0);
+    assert_int_equal(run("materials --bands >bands.txt"), 0);
+    assert_int_equal(
+        shell("grep -q '^wet-soil .*18.4-7.2i *-3.90 .* 8.2-5.5i *-5.42$' bands.txt && "
+              "grep -q '^glass .*P.2040-3' bands.txt"),
+        0);
+    assert_int_equal(run("render --model dihedral --wavelength 0.003 --rays 1 --law fresnel-hh "
+                         "--ground wet-snow --csv x.csv 2>errors"),
+                     0);
+    assert_int_equal(
+        shell("grep -q 'wet-snow: warning: its permittivity holds from 3 to 37' errors"), 0);
 }
 
 TEST(a_resolution_that_the_cells_cannot_have_is_refused)
