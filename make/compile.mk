@@ -18,7 +18,7 @@ compile = $(eval $(call compile_rule,$(strip $(1)),$(strip $(2)),$(strip $(3)),$
 $(foreach r,$(ROOMS),$(eval $(O)/firmware/$r/%.o: ROOM := $r))
 # What has no loop over cells or pixels: a board that counts its bytes compiles it for size.
 WITHOUT_LOOPS := base/% table/% bus/% nav/% page/% unit/% map/db map/detail map/detail_reader map/geoid \
-    map/geoid_reader map/slot map/slot_flash map/tile_cache clutter/sea radar/dbs radar/defocus radar/shower targets/rcs \
+    map/geoid_reader map/images map/slot map/slot_flash map/tile_cache map/tile_fill clutter/sea radar/dbs radar/defocus radar/shower targets/rcs \
     targets/chips targets/mover targets/signature targets/target targets/target_candidates targets/target_patch \
     targets/chip_sector targets/chip_patch radar/patch_rain radar/beacon radar/sector radar/track radar/track_sight \
     display/test_pattern display/symbols display/overlay display/view display/cursor

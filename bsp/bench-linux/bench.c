@@ -86,13 +86,53 @@ static int start_unit(struct bench *b, const struct bench_scene *scene)
     return lm_unit_init(b->unit, &b->board);
 }
 
+static void close_files(struct bench *b)
+{
+    while (b->flash_count > 0) {
+        drv_flash_file_close(&b->flash[--b->flash_count]);
+    }
+}
+
+static int open_file(struct bench *b, const char *path, bool is_first)
+{
+    const int cause = drv_flash_file_open(&b->flash[b->flash_count], path);
+    b->flash_count += cause == 0;
+    if (cause != 0) {
+        snprintf(b->error, sizeof b->error, "%s%scannot be opened: %s", is_first ? "" : path,
+                 is_first ? "" : ": ", strerror(cause));
+    }
+    return cause;
+}
+
+static int open_files(struct bench *b, const struct bench_scene *scene)
+{
+    int cause = open_file(b, scene->database, true);
+    for (uint32_t i = 0; i < LM_IMAGES_MAX - 1 && cause == 0; i++) {
+        cause = scene->further[i] ? open_file(b, scene->further[i], false) : 0;
+    }
+    return cause;
+}
+
+/* The flash of the board: the file, or the files one behind the other. */
+static void lend_flash(struct bench *b)
+{
+    const struct lm_flash *flash[LM_IMAGES_MAX];
+    for (uint32_t i = 0; i < b->flash_count; i++) {
+        flash[i] = &b->flash[i].port;
+    }
+    b->board.flash = flash[0];
+    if (b->flash_count > 1) {
+        drv_flash_joined_open(&b->joined, flash, b->flash_count, b->board.images);
+        b->board.flash = &b->joined.port;
+    }
+}
+
 int bench_open(struct bench *b, const struct bench_scene *scene, const struct bench_glass *glass,
                uint32_t noise_seed, const struct bench_bus *bus, const struct lm_controls *controls)
 {
     memset(b, 0, sizeof *b);
-    const int cause = drv_flash_file_open(&b->flash, scene->database);
-    if (cause != 0) {
-        snprintf(b->error, sizeof b->error, "cannot be opened: %s", strerror(cause));
+    if (open_files(b, scene) != 0) {
+        close_files(b);
         return -1;
     }
     b->display = (struct lm_display){.ctx = b,
@@ -101,7 +141,6 @@ int bench_open(struct bench *b, const struct bench_scene *scene, const struct be
                                      .acquire = acquire,
                                      .present = present};
     b->board = (struct lm_board){.radar = scene->radar,
-                                 .flash = &b->flash.port,
                                  .can = bus->can,
                                  .bus_profile = bus->profile,
                                  .can_2 = bus->can_2,
@@ -120,8 +159,9 @@ int bench_open(struct bench *b, const struct bench_scene *scene, const struct be
                                  .options = glass->options,
                                  .flash_poll_limit = 1000};
     memcpy(b->board.tables, bus->tables, sizeof b->board.tables);
+    lend_flash(b);
     if (!agrees(b, scene)) {
-        drv_flash_file_close(&b->flash);
+        close_files(b);
         return -1;
     }
     const int status = start_unit(b, scene);
@@ -136,7 +176,7 @@ int bench_open(struct bench *b, const struct bench_scene *scene, const struct be
 
 void bench_close(struct bench *b)
 {
-    drv_flash_file_close(&b->flash);
+    close_files(b);
     free(b->board.tile_pool);
     free(b->board.plane);
     for (uint32_t i = 0; i < BENCH_BUFFERS; i++) {

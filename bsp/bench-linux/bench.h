@@ -4,6 +4,7 @@
 #define BENCH_H
 
 #include "drv/flash_file.h"
+#include "drv/flash_joined.h"
 #include "lm/unit.h"
 #include "record.h"
 #include "replay.h"
@@ -12,7 +13,9 @@
 enum { BENCH_TILE_SLOTS = 384, BENCH_BUFFERS = 2 };
 
 struct bench {
-    struct drv_flash_file flash;
+    struct drv_flash_file flash[LM_IMAGES_MAX];
+    uint32_t flash_count;
+    struct drv_flash_joined joined; /* of several */
     struct lm_display display;
     uint32_t *buffer[BENCH_BUFFERS]; /* owned: width_px * height_px each, 0x00RRGGBB */
     uint32_t *glass;                 /* the one of the last frame presented */
@@ -38,12 +41,13 @@ struct bench_bus {
 
 /* What the unit looks at, and with. All but the database may be NULL. */
 struct bench_scene {
-    const char *database;           /* a file */
-    const struct lm_radar *radar;   /* borrowed; NULL: the image's, or the built-in one */
-    struct recorder *recorder;      /* borrowed: it records the flight into `sink` */
-    const struct record_sink *sink; /* borrowed for the call */
-    struct replay *replay;          /* borrowed, open: the ports and settings are the recording's */
-    bool is_any_replayed;           /* what differs from the recording is no error */
+    const char *database;                   /* a file */
+    const char *further[LM_IMAGES_MAX - 1]; /* images beside it; NULL: none at this place */
+    const struct lm_radar *radar;           /* borrowed; NULL: the image's, or the built-in one */
+    struct recorder *recorder;              /* borrowed: it records the flight into `sink` */
+    const struct record_sink *sink;         /* borrowed for the call */
+    struct replay *replay; /* borrowed, open: the ports and settings are the recording's */
+    bool is_any_replayed;  /* what differs from the recording is no error */
 };
 
 enum { BENCH_CHECK_EVERY = 10 }; /* pictures for each checksum in a recording */

@@ -46,6 +46,7 @@ struct config_stick {
 struct config {
     char slot_a[CONFIG_PATH], slot_b[CONFIG_PATH], slot_progress[CONFIG_PATH];
     char database[CONFIG_PATH];
+    char further[LM_IMAGES_MAX - 1][CONFIG_PATH]; /* images beside it */
     char database_key[CONFIG_PATH], database_serial[CONFIG_PATH];
     uint32_t database_trust; /* 1: any */
     uint32_t database_older; /* 1: fly */

@@ -13,6 +13,10 @@
 #define KEY(index, name)                                                                           \
     OPTION(CONFIG_TEXT, key[index], 0, CONFIG_NAME, "none", "key." name, "LINE | none", "none",    \
            "Line of this bezel key, by name or as CHIP:OFFSET.")
+#define FURTHER(index, name)                                                                       \
+    OPTION(CONFIG_PATH_TO, further[index], 0, ROOM(further[index]), "none", name, "PATH | none",   \
+           "none",                                                                                 \
+           "A further image, a file. At each place the finest image that has data there answers.")
 #define BUTTON_VALUES "none | designate | drop | 1..20 | gain+ | gain- | sym+ | ... | con-"
 #define STICK(number, initial)                                                                     \
     OPTION(CONFIG_BUTTON, stick_map.button[(number)-1], 0, 0, NULL, "stick.button." #number,       \
@@ -33,6 +37,9 @@ const struct config_row config_table[] = {
            "/var/lib/landmass-panel/database.lmdb",
            "Where no slot is whole: the database in flash, a file, or an MTD device such as "
            "/dev/mtd0."),
+    FURTHER(0, "database.2"),
+    FURTHER(1, "database.3"),
+    FURTHER(2, "database.4"),
     OPTION(CONFIG_PATH_TO, database_key, 0, ROOM(database_key), "none", "database.key",
            "PATH | none", "none",
            "Public keys of those who may sign the database, up to eight in a PEM file."),

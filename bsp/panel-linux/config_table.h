@@ -29,7 +29,7 @@ struct config_row {
     const char *words; /* CHOICE: its words; TEXT, PATH_TO, SIZE: the word for an empty one */
 };
 
-enum { CONFIG_ROWS = 119 };
+enum { CONFIG_ROWS = 122 };
 extern const struct config_row config_table[CONFIG_ROWS];
 
 #endif

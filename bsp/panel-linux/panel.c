@@ -36,6 +36,7 @@ static const struct lm_flash *open_flash(struct panel *p)
     if (slow == NULL) {
         return &drv_no_flash;
     }
+    slow = storage_join(&p->storage, p->config, false, slow, p->images, &p->database);
     const int cause = drv_flash_reader_start(&p->flash, slow);
     if (cause != 0) {
         report(REPORT_ERROR, "flash: no thread to read it: %s", strerror(cause));
@@ -50,6 +51,27 @@ static int next_control(void *ctx, struct lm_control *control)
     struct panel *p = ctx;
     return slots_told_next(&p->slots, control) || drv_control_ring_take(&p->bezel.ring, control) ||
            drv_control_ring_take(&p->hand.ring, control);
+}
+
+/* What the unit makes of the further images. */
+static void report_further(const struct panel *p)
+{
+    for (uint32_t i = 0; i < p->storage.further_count; i++) {
+        const char *const path = p->storage.further_path[i];
+        const int status = p->unit->map.part_status[i + 1];
+        if (status == LM_OK) {
+            report(REPORT_INFO, "%s: flown beside the database", path);
+        } else {
+            report(REPORT_ERROR, "%s: not shown: %s", path,
+                   status == LM_ERR_SENSOR  ? "its reflectivity is of another band than the "
+                                              "database's; build both for one radar"
+                   : status == LM_ERR_TABLE ? "its classes or its radar table are not the "
+                                              "database's; build both with one class table"
+                   : status == LM_ERR_VERSION
+                       ? "an image of another version; `landmass-db convert` renews old ones"
+                       : "not a database for this firmware; landmass-db verify tells why");
+        }
+    }
 }
 
 /* A database that cannot be used is no reason to stop: the glass shows DB FAIL. */
@@ -76,6 +98,7 @@ static void start_with_flash(struct panel *p, const struct lm_flash *flash)
         report(REPORT_ERROR, "%s: not a database for this firmware; landmass-db verify tells why",
                p->storage.path);
     }
+    report_further(p);
 }
 
 /* The table that the configuration names. A panel that was told its radar shows no other's picture:
@@ -195,6 +218,7 @@ static int start_unit(struct panel *p, const struct lm_flash *flash)
                     .has_borders = p->config->glass_borders != 0},
         .settings = settings_file_read(&p->settings, p->config->settings),
         .flash_poll_limit = START_POLLS};
+    memcpy(p->board.images, p->images, sizeof p->board.images);
     p->board.tile_pool = calloc(1, p->board.tile_pool_bytes);
     p->board.plane = calloc(1, pixels);
     p->unit = calloc(1, sizeof *p->unit);

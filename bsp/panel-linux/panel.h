@@ -28,6 +28,7 @@ struct panel {
     const struct config *config; /* borrowed */
     uint64_t zero_us;            /* time of CLOCK_MONOTONIC at which the panel's clock is 0 */
     struct storage storage;
+    struct lm_flash_part images[LM_IMAGES_MAX]; /* of the flash; none: it has one */
     struct slots_told slots;
     struct drv_flash_reader flash;
     struct database database;

@@ -12,6 +12,8 @@ KERNELS := arm64
 # No operating system, no C library, nothing loaded at an address that is not known when it is linked.
 OPT      := -O2 -g -mcpu=cortex-a53 -ffreestanding -fno-pic -fno-stack-protector -ffunction-sections -fdata-sections \
     -fcallgraph-info=su # for the deepest stack (tests/zcu102/memory.py)
+# Its flash holds one image.
+OPT      += -DLM_IMAGES_MAX=1
 # The two lowest layers are integers and make vectors of loops; drivers and board run in interrupts, which keep their
 # hands off the vector registers, and before the MMU allows unaligned access.
 OPT_core := -O3

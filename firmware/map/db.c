@@ -73,7 +73,7 @@ static int read_section(struct lm_db *db, const struct lm_image_section *s, void
                         uint32_t poll_limit)
 {
     const uint32_t length = (uint32_t)s->bytes; /* bounded by find_section */
-    const int status = lm_db_read(db->flash, s->offset, destination, length, poll_limit);
+    const int status = lm_db_read(db->flash, db->base + s->offset, destination, length, poll_limit);
     if (status != LM_OK) {
         return status;
     }
@@ -132,7 +132,7 @@ static int read_head(const struct lm_db *db, const struct lm_image_header *h, ui
     if ((*s)->bytes < head_bytes || !is_inside(h, *s)) {
         return LM_ERR_CORRUPT;
     }
-    const int status = lm_db_read(db->flash, (*s)->offset, head, head_bytes, poll_limit);
+    const int status = lm_db_read(db->flash, db->base + (*s)->offset, head, head_bytes, poll_limit);
     if (status != LM_OK) {
         return status;
     }
@@ -157,7 +157,7 @@ static int read_targets_head(struct lm_db *db, const struct lm_image_header *h, 
         return LM_ERR_CORRUPT;
     }
     db->target_count = head.count;
-    db->targets_offset = s->offset + sizeof head;
+    db->targets_offset = db->base + s->offset + sizeof head;
     return LM_OK;
 }
 
@@ -180,7 +180,7 @@ static int read_signatures_head(struct lm_db *db, const struct lm_image_header *
     }
     db->signature_count = head.count;
     db->chip_count = head.chip_count;
-    db->signatures_offset = s->offset + sizeof head;
+    db->signatures_offset = db->base + s->offset + sizeof head;
     db->chips_offset = db->signatures_offset + records;
     return LM_OK;
 }
@@ -202,9 +202,9 @@ static int find_tiles(struct lm_db *db, const struct lm_image_header *h)
     if (tiles == NULL) {
         return LM_ERR_CORRUPT;
     }
-    db->records_offset = tiles->offset;
+    db->records_offset = db->base + tiles->offset;
     db->tiles_size = size_in_units(h, tiles);
-    db->detail_offset = detail ? detail->offset : 0;
+    db->detail_offset = detail ? db->base + detail->offset : 0;
     db->detail_size = detail ? size_in_units(h, detail) : 0;
     return db->tiles_size != UINT32_MAX && db->detail_size != UINT32_MAX ? LM_OK : LM_ERR_CORRUPT;
 }
@@ -240,7 +240,7 @@ static int read_geoid_pages(struct lm_db *db, const struct lm_image_header *h, u
     if (!lm_geoid_pages_are_sound(&head, s->bytes)) {
         return LM_ERR_CORRUPT;
     }
-    db->geoid_pages = (struct lm_geoid_pages){.offset = s->offset + sizeof head,
+    db->geoid_pages = (struct lm_geoid_pages){.offset = db->base + s->offset + sizeof head,
                                               .shift = head.shift,
                                               .row0 = head.row0,
                                               .rows = head.rows,
@@ -250,11 +250,11 @@ static int read_geoid_pages(struct lm_db *db, const struct lm_image_header *h, u
 }
 
 /* The tables of radar and bus are optional. Who reads the record checks it. */
-static int find_record(const struct lm_image_header *h, enum lm_image_section_type type,
-                       uint64_t *offset, uint32_t *bytes)
+static int find_record(const struct lm_db *db, const struct lm_image_header *h,
+                       enum lm_image_section_type type, uint64_t *offset, uint32_t *bytes)
 {
     const struct lm_image_section *s = section_of_type(h, type);
-    *offset = s ? s->offset : 0;
+    *offset = s ? db->base + s->offset : 0;
     *bytes = s ? (uint32_t)s->bytes : 0;
     return !s || (is_inside(h, s) && s->bytes > 0 && s->bytes <= UINT32_MAX) ? LM_OK
                                                                              : LM_ERR_CORRUPT;
@@ -270,7 +270,7 @@ static int read_tables(struct lm_db *db, const struct lm_image_header *h, uint32
     if (!classes || !bands || !directory) {
         return LM_ERR_CORRUPT;
     }
-    db->directory_offset = directory->offset;
+    db->directory_offset = db->base + directory->offset;
     int status = read_section(db, classes, &db->classes, poll_limit);
     if (status == LM_OK) {
         status = read_section(db, bands, db->bands, poll_limit);
@@ -286,13 +286,14 @@ static int read_tables(struct lm_db *db, const struct lm_image_header *h, uint32
     return classes_are_sound(&db->classes) ? LM_OK : LM_ERR_CORRUPT;
 }
 
-int lm_db_open(struct lm_db *db, const struct lm_flash *flash, uint32_t poll_limit)
+int lm_db_open_part(struct lm_db *db, const struct lm_flash *flash,
+                    const struct lm_flash_part *part, uint32_t poll_limit)
 {
     struct lm_image_header h;
-    if (flash->size_bytes < sizeof h) {
+    if (part->bytes < sizeof h) {
         return LM_ERR_CORRUPT;
     }
-    const int status = lm_db_read(flash, 0, &h, sizeof h, poll_limit);
+    const int status = lm_db_read(flash, part->offset, &h, sizeof h, poll_limit);
     if (status != LM_OK) {
         return status;
     }
@@ -308,10 +309,14 @@ int lm_db_open(struct lm_db *db, const struct lm_flash *flash, uint32_t poll_lim
     if (h.top != LM_IMAGE_TOP_PLAIN || h.sensor >= LM_SENSORS) {
         return LM_ERR_VERSION;
     }
-    if (!header_is_sound(&h, flash->size_bytes)) {
+    if (!header_is_sound(&h, part->bytes)) {
         return LM_ERR_CORRUPT;
     }
     db->flash = flash;
+    db->base = part->offset;
+    const struct lm_image_section *radar = section_of_type(&h, LM_IMAGE_RADAR);
+    db->radar_crc = radar ? radar->crc : 0;
+    db->finest = 0;
     db->shift0 = h.shift0;
     db->lod_count = h.lod_count;
     db->band_count = h.band_count;
@@ -335,15 +340,21 @@ int lm_db_open(struct lm_db *db, const struct lm_flash *flash, uint32_t poll_lim
         tables = find_tiles(db, &h);
     }
     if (tables == LM_OK) {
-        tables = find_record(&h, LM_IMAGE_RADAR, &db->radar_offset, &db->radar_bytes);
+        tables = find_record(db, &h, LM_IMAGE_RADAR, &db->radar_offset, &db->radar_bytes);
     }
     if (tables == LM_OK) {
-        tables = find_record(&h, LM_IMAGE_BUS, &db->bus_offset, &db->bus_bytes);
+        tables = find_record(db, &h, LM_IMAGE_BUS, &db->bus_offset, &db->bus_bytes);
     }
     if (tables == LM_OK) {
         tables = read_targets_head(db, &h, poll_limit);
     }
     return tables == LM_OK ? read_signatures_head(db, &h, poll_limit) : tables;
+}
+
+int lm_db_open(struct lm_db *db, const struct lm_flash *flash, uint32_t poll_limit)
+{
+    const struct lm_flash_part whole = {0, flash->size_bytes};
+    return lm_db_open_part(db, flash, &whole, poll_limit);
 }
 
 int64_t lm_db_entry(const struct lm_db *db, uint8_t lod, uint32_t row, uint32_t column)

@@ -2,13 +2,13 @@
 
 static uint32_t row_of(const struct lm_db *db, fx_bam_t latitude)
 {
-    return (latitude + FX_BAM_90) >> (db->shift0 + LM_TILE_CELLS_LOG2);
+    return (latitude + FX_BAM_90) >> (db->shift0 + db->finest + LM_TILE_CELLS_LOG2);
 }
 
 /* The zone is that of the southern border: a tile lies in one zone. */
 struct lm_detail_ground lm_detail_ground_of(const struct lm_db *db, uint32_t row, uint32_t column)
 {
-    const uint32_t north_log2 = (uint32_t)db->shift0 + LM_TILE_CELLS_LOG2;
+    const uint32_t north_log2 = (uint32_t)db->shift0 + db->finest + LM_TILE_CELLS_LOG2;
     const fx_bam_t south = (row << north_log2) - FX_BAM_90;
     const uint32_t east_log2 = north_log2 + lm_db_zone(south);
     return (struct lm_detail_ground){{south, column << east_log2}, north_log2, east_log2};
@@ -56,10 +56,11 @@ static void start_read(struct lm_detail_reader *r, struct lm_tile_cache *tiles,
                        const struct lm_tile_slot *slot)
 {
     r->bytes = (uint32_t)slot->detail_size * LM_DETAIL_UNIT_BYTES;
-    r->read = (struct lm_flash_request){
-        .offset = tiles->db->detail_offset + (uint64_t)slot->detail_place * LM_DETAIL_UNIT_BYTES,
-        .destination = &r->record,
-        .length = r->bytes};
+    r->read =
+        (struct lm_flash_request){.offset = tiles->images[slot->image].detail_offset +
+                                            (uint64_t)slot->detail_place * LM_DETAIL_UNIT_BYTES,
+                                  .destination = &r->record,
+                                  .length = r->bytes};
     if (lm_tile_cache_read(tiles, &r->read)) {
         r->under = tiles->pool[slot - tiles->slots].under;
         r->state = LM_DETAIL_READING;
@@ -93,7 +94,8 @@ enum lm_detail_step lm_detail_reader_step(struct lm_detail_reader *r, struct lm_
         next_tile(r, tiles->db);
     }
     for (; !is_beyond(r); next_tile(r, tiles->db)) {
-        const struct lm_tile_slot *slot = lm_tile_cache_find(tiles, 0, r->row, r->column);
+        const struct lm_tile_slot *slot =
+            lm_tile_cache_find(tiles, tiles->db->finest, r->row, r->column);
         if (slot && slot->detail_size != 0) {
             start_read(r, tiles, slot);
             return LM_DETAIL_AWAITED;

@@ -12,15 +12,19 @@ static void take_page(struct lm_geoid_reader *r, const struct lm_geoid_pages *pa
 }
 
 void lm_geoid_reader_service(struct lm_geoid_reader *r, struct lm_tile_cache *tiles,
-                             struct lm_position place)
+                             const struct lm_db *db, struct lm_position place)
 {
-    const struct lm_geoid_pages *pages = &tiles->db->geoid_pages;
+    const struct lm_geoid_pages *pages = &db->geoid_pages;
     const uint32_t wanted = lm_geoid_page_of(pages, place);
     if (r->reading != 0) {
         if (r->read.status == LM_BUSY) {
             return;
         }
-        take_page(r, pages);
+        take_page(r, &r->db->geoid_pages);
+    }
+    if (r->db != db) {
+        r->db = db;
+        r->resident = r->lost = 0;
     }
     if (wanted == 0 || wanted == r->resident || wanted == r->lost) {
         return;
@@ -39,7 +43,7 @@ int32_t lm_geoid_reader_height_m_q6(const struct lm_geoid_reader *r, const struc
                                     struct lm_position place)
 {
     const uint32_t page = lm_geoid_page_of(&db->geoid_pages, place);
-    if (page != 0 && page == r->resident) {
+    if (page != 0 && page == r->resident && db == r->db) {
         return lm_geoid_height_m_q6(&r->page, place);
     }
     return db->geoid.rows > 0 ? lm_geoid_height_m_q6(&db->geoid, place) : db->geoid_m_q6;

@@ -47,7 +47,7 @@ struct walk {
 uint8_t lm_scan_lod(const struct lm_db *db, uint32_t cell_mm)
 {
     const uint64_t longest_mm = (uint64_t)cell_mm + cell_mm / 8;
-    uint8_t lod = 0;
+    uint8_t lod = db->finest;
     while (lod + 1 < db->lod_count && lm_db_cell_mm(db, (uint8_t)(lod + 1)) <= longest_mm) {
         lod++;
     }
@@ -62,7 +62,7 @@ enum { TEXEL_SHIFT = 32 - LM_TILE_CELLS_LOG2 - 2 };
 
 void lm_scan_blend_set(struct lm_scan_blend *b, const struct lm_db *db, uint32_t cell_mm)
 {
-    const uint32_t map_mm = lm_db_cell_mm(db, 0);
+    const uint32_t map_mm = lm_db_cell_mm(db, db->finest);
     const bool has_crowns = cell_mm < CROWN_CELL_MM && map_mm > CROWN_CELL_MM;
     b->is_on = (uint64_t)3 * cell_mm < (uint64_t)2 * map_mm;
     b->natural = b->crowned = b->flat = 0;
@@ -71,8 +71,9 @@ void lm_scan_blend_set(struct lm_scan_blend *b, const struct lm_db *db, uint32_t
         b->natural |= (uint32_t)(c->flags & LM_CLASS_NATURAL) << i;
         b->crowned |= (uint32_t)(has_crowns && c->kind == LM_KIND_TREES) << i;
     }
-    b->grown_shift =
-        has_crowns ? 32u - LM_TILE_CELLS_LOG2 - db->shift0 + LM_GROWN_TEXEL_LOG2 : TEXEL_SHIFT;
+    b->grown_shift = has_crowns
+                         ? 32u - LM_TILE_CELLS_LOG2 - db->shift0 - db->finest + LM_GROWN_TEXEL_LOG2
+                         : TEXEL_SHIFT;
     /* Three halves of a texel, which is map_mm over 2^(32 - 6 - grown_shift). */
     b->is_stepped =
         (uint64_t)2 * cell_mm << (32 - LM_TILE_CELLS_LOG2 - b->grown_shift) >= (uint64_t)3 * map_mm;

@@ -7,6 +7,11 @@ enum {
     SLOTS_LEAST = 20          /* the nine that lm_tile_cache_keep_around keeps, and as many more */
 };
 
+static bool has_several(const struct lm_tile_cache *c)
+{
+    return LM_IMAGES_MAX > 1 && c->image_count > 1;
+}
+
 static uint8_t coarsest_lod(const struct lm_tile_cache *c)
 {
     return (uint8_t)(c->db->lod_count - 1);
@@ -80,6 +85,7 @@ static uint16_t claim_slot(struct lm_tile_cache *c, const struct lm_tile_key *ke
                                         .row = key->row,
                                         .column = key->column,
                                         .lod = key->lod,
+                                        .image = key->image,
                                         .last_use = c->clock,
                                         .next = *head};
     *head = i;
@@ -96,19 +102,95 @@ static void finish(struct lm_tile_cache *c, enum lm_slot_state state)
     c->reading_slot = LM_SLOT_NONE;
 }
 
-static void fail(struct lm_tile_cache *c, uint32_t *counter)
-{
-    (*counter)++;
-    finish(c, LM_SLOT_BAD);
-}
-
-/* Start to read a part of a tile. A refusal counts as a failed read. */
+/* Start to read a part of a tile. A refusal counts as a failed read, when the service sees it. */
 static void start_read(struct lm_tile_cache *c, uint64_t offset, void *to, uint32_t length)
 {
     const struct lm_flash *flash = c->db->flash;
     c->count.bytes_read += length;
-    if (flash->read_start(flash->ctx, offset, to, length) != LM_OK) {
-        fail(c, &c->count.io_errors);
+    c->is_refused = flash->read_start(flash->ctx, offset, to, length) != LM_OK;
+}
+
+/* LOD of an image that has the cells of an LOD of the cache; 255 or less, and no LOD of the image
+ * if that has none of this size. */
+static uint8_t lod_in(const struct lm_tile_cache *c, const struct lm_db *image, uint8_t lod)
+{
+    return (uint8_t)(lod + c->db->shift0 - image->shift0);
+}
+
+/* The first image from `first` on that may have a tile, into *key. False if none does. */
+static bool find_entry(const struct lm_tile_cache *c, uint32_t first, uint8_t lod, uint32_t row,
+                       uint32_t column, struct lm_tile_key *key)
+{
+    for (uint32_t i = first; i < LM_IMAGES_MAX && i < c->image_count; i++) {
+        const struct lm_db *image = &c->images[i];
+        const int64_t entry = (c->mounted >> i & 1) != 0
+                                  ? lm_db_entry(image, lod_in(c, image, lod), row, column)
+                                  : -1;
+        if (entry >= 0) {
+            *key = (struct lm_tile_key){row, column, (uint32_t)entry, lod, (uint8_t)i};
+            return true;
+        }
+    }
+    return false;
+}
+
+static void start_entry(struct lm_tile_cache *c)
+{
+    const struct lm_tile_key *key = &c->reading;
+    c->is_reading_entry = true;
+    start_read(c, lm_db_entry_offset(&c->images[key->image], key->entry), &c->entry,
+               sizeof c->entry);
+}
+
+/* Go on with another image from `first` on: with the tile itself; or, where the gaps of a tile are
+ * filled, with the finest from LOD `lod` of the first image, then of those behind it. False if
+ * there is none. */
+static bool go_on_with(struct lm_tile_cache *c, uint32_t first, uint8_t lod)
+{
+    if (!has_several(c)) {
+        return false;
+    }
+    const struct lm_tile_slot *s = &c->slots[c->reading_slot];
+    if (!c->has_gaps) {
+        const bool is_found = find_entry(c, first, s->lod, s->row, s->column, &c->reading);
+        if (is_found) {
+            start_entry(c);
+        }
+        return is_found;
+    }
+    for (uint32_t i = first; i < c->image_count; i++, lod = s->lod) {
+        for (; lod < c->db->lod_count; lod++) {
+            const uint32_t up = (uint32_t)(lod - s->lod);
+            struct lm_tile_key key;
+            if (find_entry(c, i, lod, s->row >> up, s->column >> up, &key) && key.image == i) {
+                c->reading = key;
+                start_entry(c);
+                return true;
+            }
+        }
+    }
+    return false;
+}
+
+/* The slot's tile is whole, or filled as far as it can be. */
+static void settle(struct lm_tile_cache *c)
+{
+    struct lm_tile *tile = &c->pool[c->reading_slot];
+    c->count.tiles_read++;
+    c->slots[c->reading_slot].base = lm_tile_base_of(c->pool, tile);
+    finish(c, LM_SLOT_RESIDENT);
+}
+
+/* What was read cannot be used: the next image answers, if there is one. */
+static void fail(struct lm_tile_cache *c, uint32_t *counter)
+{
+    (*counter)++;
+    if (!go_on_with(c, c->reading.image + 1u, c->slots[c->reading_slot].lod)) {
+        if (has_several(c) && c->has_gaps) {
+            settle(c);
+        } else {
+            finish(c, LM_SLOT_BAD);
+        }
     }
 }
 
@@ -137,44 +219,96 @@ static void start_next(struct lm_tile_cache *c)
     }
     c->slots[slot].state = LM_SLOT_READING;
     c->reading_slot = slot;
-    c->reading_entry = key.entry;
-    c->is_reading_entry = true;
-    start_read(c, lm_db_entry_offset(c->db, key.entry), &c->entry, sizeof c->entry);
+    c->reading = key;
+    c->has_gaps = false;
+    start_entry(c);
+}
+
+/* Memory of the record that is being read: the slot's, or the one for filling. */
+static struct lm_tile *record_of(const struct lm_tile_cache *c)
+{
+    return &c->pool[has_several(c) && c->has_gaps ? c->slot_count : c->reading_slot];
+}
+
+/* The image leaves the tile out: look in the next one. */
+static void take_absence(struct lm_tile_cache *c)
+{
+    const struct lm_tile_slot absent = c->slots[c->reading_slot];
+    if (go_on_with(c, c->reading.image + !c->has_gaps, (uint8_t)(c->reading.lod + 1))) {
+        return;
+    }
+    if (has_several(c) && c->has_gaps) {
+        settle(c);
+        return;
+    }
+    finish(c, LM_SLOT_ABSENT);
+    lm_tile_cache_want(c, absent.lod, absent.row, absent.column); /* requests its parent */
 }
 
 /* The directory entry was read: begin to read the record that it names. */
 static void take_entry(struct lm_tile_cache *c)
 {
     const struct lm_tile_entry *entry = &c->entry;
-    const int status = lm_db_entry_check(c->db, c->reading_entry, entry);
+    const struct lm_db *image = &c->images[c->reading.image];
+    const int status = lm_db_entry_check(image, c->reading.entry, entry);
     if (status != LM_OK) {
         c->count.encodings += status == LM_ERR_VERSION;
         fail(c, &c->count.corrupt);
     } else if (entry->place == LM_TILE_ABSENT) {
-        const struct lm_tile_slot absent = c->slots[c->reading_slot];
-        finish(c, LM_SLOT_ABSENT);
-        lm_tile_cache_want(c, absent.lod, absent.row, absent.column); /* requests its parent */
+        take_absence(c);
     } else {
+        struct lm_tile_slot *s = &c->slots[c->reading_slot];
         c->is_reading_entry = false;
-        c->slots[c->reading_slot].detail_place = entry->detail_place;
-        c->slots[c->reading_slot].detail_size = entry->detail_size;
-        start_read(c, lm_db_tile_offset(c->db, entry),
-                   lm_tile_unpack_place(&c->pool[c->reading_slot], entry->size),
+        if (!c->has_gaps) {
+            s->image = c->reading.image;
+            s->detail_place = entry->detail_place;
+            s->detail_size = entry->detail_size;
+        }
+        start_read(c, lm_db_tile_offset(image, entry),
+                   lm_tile_unpack_place(record_of(c), entry->size),
                    (uint32_t)LM_DB_PLACE_BYTES * entry->size);
     }
 }
 
-/* The tile is whole: make it resident if it passes its check. */
+/* Look for what fills the gaps of the slot's tile in the images behind the one at hand. If there is
+ * none, or nothing to fill, the tile is ready. */
+static void fill_on(struct lm_tile_cache *c)
+{
+    const uint32_t next = c->reading.image + 1u;
+    c->has_gaps =
+        has_several(c) && next < c->image_count && lm_tile_has_gaps(&c->pool[c->reading_slot]);
+    if (!c->has_gaps || !go_on_with(c, next, c->slots[c->reading_slot].lod)) {
+        settle(c);
+    }
+}
+
+static void go_on_filling(struct lm_tile_cache *c)
+{
+    c->is_filling = lm_tile_fill_run(&c->fill) == LM_BUSY;
+    if (!c->is_filling) {
+        fill_on(c);
+    }
+}
+
+/* The tile is whole: make it resident if it passes its check, or fill its gaps, or those of another
+ * by it. */
 static void take_tile(struct lm_tile_cache *c)
 {
-    const struct lm_tile_slot *s = &c->slots[c->reading_slot];
-    if (lm_tile_check(&c->pool[c->reading_slot], s->lod, s->row, s->column) != LM_OK) {
+    const struct lm_tile_key *key = &c->reading;
+    struct lm_tile *tile = record_of(c);
+    const uint8_t lod = lod_in(c, &c->images[key->image], key->lod);
+    if (lm_tile_check(tile, lod, key->row, key->column) != LM_OK) {
         fail(c, &c->count.corrupt);
         return;
     }
-    c->count.tiles_read++;
-    c->slots[c->reading_slot].base = lm_tile_base_of(c->pool, &c->pool[c->reading_slot]);
-    finish(c, LM_SLOT_RESIDENT);
+    tile->lod = key->lod; /* of the cache from now on */
+    if (has_several(c) && c->has_gaps) {
+        struct lm_tile *filled = &c->pool[c->reading_slot];
+        lm_tile_fill_begin(&c->fill, filled, tile, (uint32_t)(key->lod - filled->lod));
+        c->is_filling = true;
+    } else {
+        fill_on(c);
+    }
 }
 
 /* Go on with a compressed record after a part of its unpacking, or its begin. */
@@ -194,8 +328,7 @@ static void take_record(struct lm_tile_cache *c)
     if (c->entry.encoding == LM_TILE_RAW) {
         take_tile(c);
     } else {
-        go_on_unpacking(c,
-                        lm_tile_unpack_begin(&c->unpack, &c->pool[c->reading_slot], c->entry.size));
+        go_on_unpacking(c, lm_tile_unpack_begin(&c->unpack, record_of(c), c->entry.size));
     }
 }
 
@@ -242,11 +375,21 @@ static bool start_pending(struct lm_tile_cache *c)
     return true;
 }
 
+/* The read under way ends for nobody. */
+static void discard(struct lm_tile_cache *c)
+{
+    c->is_stale = c->is_unpacking = c->is_filling = c->is_refused = false;
+    unlink_slot(c, c->reading_slot);
+    finish(c, LM_SLOT_FREE);
+}
+
 /* The read under way has ended, well or not. */
 static void end_read(struct lm_tile_cache *c, bool is_ok)
 {
     if (c->is_reading_request) {
         finish_request(c, is_ok);
+    } else if (c->is_stale) {
+        discard(c);
     } else if (!is_ok) {
         fail(c, &c->count.io_errors);
     } else if (c->is_reading_entry) {
@@ -276,6 +419,15 @@ void lm_tile_cache_service(struct lm_tile_cache *c, uint64_t now_us, uint32_t re
             go_on_unpacking(c, lm_tile_unpack_run(&c->unpack));
             continue;
         }
+        if (has_several(c) && c->is_filling) {
+            go_on_filling(c);
+            continue;
+        }
+        if (c->is_refused) {
+            c->is_refused = false;
+            end_read(c, false);
+            continue;
+        }
         const int status = flash->read_poll(flash->ctx);
         if (status == LM_BUSY) {
             return;
@@ -290,7 +442,8 @@ static void queue_request(struct lm_tile_cache *c, const struct lm_tile_key *key
 {
     for (uint32_t back = 1; back <= DUPLICATES_SEARCHED && back <= c->wanted_head - c->wanted_tail;
          back++) {
-        if (c->wanted[(c->wanted_head - back) % LM_TILE_REQUESTS].entry == key->entry) {
+        const struct lm_tile_key *other = &c->wanted[(c->wanted_head - back) % LM_TILE_REQUESTS];
+        if (other->entry == key->entry && other->image == key->image) {
             return;
         }
     }
@@ -313,14 +466,15 @@ static bool want_tile(struct lm_tile_cache *c, uint8_t lod, uint32_t row, uint32
         }
         c->slots[i].last_use = c->clock;
         if (is_settled(c, i)) {
-            return true;
+            /* Of several images the ancestor that answers may be another's, and not resident. */
+            return c->slots[i].state != LM_SLOT_BAD || !has_several(c);
         }
     }
-    const int64_t entry = lm_db_entry(c->db, lod, row, column);
-    if (entry < 0) {
+    struct lm_tile_key key;
+    if (!find_entry(c, 0, lod, row, column, &key)) {
         return false;
     }
-    queue_request(c, &(struct lm_tile_key){row, column, (uint32_t)entry, lod});
+    queue_request(c, &key);
     return true;
 }
 
@@ -404,10 +558,11 @@ void lm_tile_cache_keep_around(struct lm_tile_cache *c, struct lm_position place
 /* Read every tile of a band of the coarsest LOD and wait for each. */
 static void read_band(struct lm_tile_cache *c, const struct lm_band *band, uint32_t poll_limit)
 {
-    const uint32_t round = 1u << (32 - LM_TILE_CELLS_LOG2 - c->db->shift0 - band->lod - band->zone);
+    const uint8_t lod = coarsest_lod(c);
+    const uint32_t round = 1u << (32 - LM_TILE_CELLS_LOG2 - c->db->shift0 - lod - band->zone);
     for (uint32_t t = 0; t < band->rows * band->columns; t++) {
         const uint32_t column = (band->column0 + t % band->columns) & (round - 1);
-        lm_tile_cache_want(c, band->lod, band->row0 + t / band->columns, column);
+        lm_tile_cache_want(c, lod, band->row0 + t / band->columns, column);
         for (uint32_t polls = 0; polls < poll_limit && !lm_tile_cache_is_idle(c); polls++) {
             lm_tile_cache_service(c, 0, 1);
         }
@@ -418,28 +573,34 @@ static void read_band(struct lm_tile_cache *c, const struct lm_band *band, uint3
  * first picture. */
 static void read_coarsest(struct lm_tile_cache *c, uint32_t poll_limit)
 {
-    const uint8_t lod = coarsest_lod(c);
     uint64_t total = 0;
-    for (uint32_t b = 0; b < c->db->band_count; b++) {
-        const struct lm_band *band = &c->db->bands[b];
-        total += band->lod == lod ? (uint64_t)band->rows * band->columns : 0;
-    }
-    c->is_top_resident = total <= c->slot_count / 2;
-    for (uint32_t b = 0; b < c->db->band_count && c->is_top_resident; b++) {
-        if (c->db->bands[b].lod == lod) {
-            read_band(c, &c->db->bands[b], poll_limit);
+    for (uint32_t pass = 0; pass < 2; pass++) {
+        for (uint32_t i = 0; i < c->image_count; i++) {
+            const struct lm_db *image = &c->images[i];
+            for (uint32_t b = 0; b < image->band_count; b++) {
+                const struct lm_band *band = &image->bands[b];
+                if (band->lod != lod_in(c, image, coarsest_lod(c))) {
+                    continue;
+                }
+                total += (uint64_t)band->rows * band->columns;
+                if (c->is_top_resident) {
+                    read_band(c, band, poll_limit);
+                }
+            }
         }
+        c->is_top_resident = total <= c->slot_count / 2;
+        total = 0;
     }
 }
 
-int lm_tile_cache_init(struct lm_tile_cache *c, const struct lm_db *db, void *pool,
-                       size_t pool_bytes, uint32_t poll_limit)
+static void init(struct lm_tile_cache *c, const struct lm_db *db, const struct lm_db *images,
+                 uint32_t image_count)
 {
     memset(c, 0, sizeof *c);
     c->db = db;
-    c->pool = pool;
-    const size_t slots = pool_bytes / sizeof(struct lm_tile);
-    c->slot_count = slots < LM_TILE_SLOTS_MAX ? (uint32_t)slots : LM_TILE_SLOTS_MAX;
+    c->images = images;
+    c->image_count = image_count;
+    c->mounted = (1u << image_count) - 1;
     c->reading_slot = LM_SLOT_NONE;
     for (uint32_t i = 0; i <= LM_TILE_SLOTS_MAX; i++) {
         c->slots[i].resident = LM_TILE_NO_NAME;
@@ -449,9 +610,56 @@ int lm_tile_cache_init(struct lm_tile_cache *c, const struct lm_db *db, void *po
             c->heads[lod][i] = LM_SLOT_NONE;
         }
     }
+}
+
+static int open_pool(struct lm_tile_cache *c, void *pool, size_t pool_bytes, uint32_t poll_limit)
+{
+    const size_t slots = pool_bytes / sizeof(struct lm_tile);
+    c->pool = pool;
+    c->slot_count = slots < LM_TILE_SLOTS_MAX ? (uint32_t)slots : LM_TILE_SLOTS_MAX;
     if (c->slot_count < SLOTS_LEAST) {
         return LM_ERR_NO_MEMORY;
     }
     read_coarsest(c, poll_limit);
     return LM_OK;
+}
+
+int lm_tile_cache_init(struct lm_tile_cache *c, const struct lm_db *db, void *pool,
+                       size_t pool_bytes, uint32_t poll_limit)
+{
+    init(c, db, db, 1);
+    return open_pool(c, pool, pool_bytes, poll_limit);
+}
+
+int lm_tile_cache_init_over(struct lm_tile_cache *c, const struct lm_db *db,
+                            const struct lm_db *images, uint32_t image_count, void *pool,
+                            size_t pool_bytes, uint32_t poll_limit)
+{
+    init(c, db, images, image_count);
+    return open_pool(c, pool,
+                     pool_bytes < sizeof(struct lm_tile) ? 0 : pool_bytes - sizeof(struct lm_tile),
+                     poll_limit);
+}
+
+void lm_tile_cache_mount(struct lm_tile_cache *c, uint32_t image_count, uint32_t mounted)
+{
+    c->image_count = image_count;
+    c->mounted = mounted;
+    c->is_top_resident = false;
+    c->wanted_tail = c->wanted_head;
+    for (uint32_t i = 0; i < c->slot_count; i++) {
+        if (c->slots[i].state != LM_SLOT_FREE && i != c->reading_slot) {
+            unlink_slot(c, (uint16_t)i);
+            c->slots[i] = (struct lm_tile_slot){.resident = LM_TILE_NO_NAME};
+        }
+    }
+    c->is_stale = c->reading_slot != LM_SLOT_NONE;
+    if (c->is_stale && (c->is_unpacking || c->is_filling || c->is_refused)) {
+        discard(c);
+    }
+}
+
+bool lm_tile_cache_is_drained(const struct lm_tile_cache *c)
+{
+    return !c->is_stale && !c->request;
 }

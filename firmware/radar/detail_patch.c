@@ -16,7 +16,7 @@ void lm_detail_patch_clear(struct lm_detail_patch *p, const struct lm_db *db)
 {
     p->tile_count = p->shape_count = 0;
     p->structures = 0;
-    p->side_log2 = (uint8_t)(db->shift0 + LM_TILE_CELLS_LOG2);
+    p->side_log2 = (uint8_t)(db->shift0 + db->finest + LM_TILE_CELLS_LOG2);
     for (uint32_t n = 0; n < LM_DB_CLASSES; n++) {
         const bool is_structure = db->classes.entry[n].kind == LM_KIND_STRUCTURE;
         p->structures |= (uint16_t)(is_structure << n);
@@ -243,7 +243,7 @@ void lm_detail_patch_add(struct lm_detail_patch *p, const struct lm_detail_reade
         struct lm_detail_shape shape = shape_of(item, &place, db, g, lobe);
         if (shape.first_line < shape.end_line) {
             shape.elevation_m_q14 = (int32_t)lm_m_q14_of_m_q10(
-                lm_scan_elevation(tiles, 0, position_of(r, db, item), 0));
+                lm_scan_elevation(tiles, db->finest, position_of(r, db, item), 0));
             p->shape[p->shape_count++] = shape;
         }
     }

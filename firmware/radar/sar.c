@@ -349,7 +349,7 @@ int lm_sar_start(struct lm_sar *s, const struct lm_radar *radar, const struct lm
     const uint64_t patch_ms = lm_ms_of_us(patch_us);
     s->dwell_ms = (uint32_t)(patch_ms < DWELL_MOST_MS ? patch_ms : DWELL_MOST_MS);
     lm_sar_set_relief(s, db, &setup->relief);
-    const bool is_finer = s->lod == 0 && command->cell_mm < lm_db_cell_mm(db, 0);
+    const bool is_finer = s->lod == db->finest && command->cell_mm < lm_db_cell_mm(db, db->finest);
     s->detail_state = is_finer && db->detail_size != 0 ? LM_SAR_DETAIL_WANTED : LM_SAR_DETAIL_NONE;
     return LM_OK;
 }

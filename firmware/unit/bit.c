@@ -183,6 +183,10 @@ static void add_database(const struct lm_unit *u, uint32_t row, struct lm_text *
         lm_text_add(t, u->map.is_usable ? u->map.db.title
                        : refusal.length ? refusal.words
                                         : "FAIL");
+        if (u->map.image_count > 1) {
+            lm_text_add(t, "  +");
+            lm_text_number(t, u->map.image_count - 1, 1);
+        }
     } else {
         add_pair(t, "LEVELS", u->map.is_usable ? u->map.db.lod_count : 0, "RECORDS",
                  u->map.is_usable ? u->map.db.record_count : 0);

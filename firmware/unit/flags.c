@@ -32,7 +32,7 @@ static uint32_t map_flags(struct lm_unit *u, uint64_t now_us)
         u->tile_faults.seen = faults;
         u->tile_faults.grew_us = now_us;
     }
-    const bool is_fault = is_read_stuck(u, now_us) ||
+    const bool is_fault = is_read_stuck(u, now_us) || lm_unit_map_refused(&u->map) != 0 ||
                           (faults != 0 && now_us - u->tile_faults.grew_us < TILE_FAULT_SHOWN_US);
     return (u->map.is_usable ? 0u : LM_FLAG_DB) | (is_fault ? LM_FLAG_TILE : 0u);
 }

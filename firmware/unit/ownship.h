@@ -19,8 +19,7 @@ static inline int32_t lm_antenna_height_m_q6(const struct lm_ownship *own,
     if (!is_ellipsoidal) {
         return own->height_m_q6;
     }
-    return own->height_m_q6 -
-           lm_geoid_reader_height_m_q6(&map->geoid, &map->db, lm_ownship_position(own));
+    return own->height_m_q6 - lm_unit_map_geoid_m_q6(map, lm_ownship_position(own));
 }
 
 /* True if position and heading are good or stale. */

@@ -63,6 +63,12 @@ static struct lm_sar_relief relief_of(const struct lm_picture *p,
     return lm_sar_relief_of(&p->lent.map->tiles, p->lent.radar, command);
 }
 
+/* Longer than half the diagonal of a patch. */
+static uint32_t patch_reach_m(const struct lm_picture *p, const struct lm_sar_command *command)
+{
+    return (uint32_t)((uint64_t)p->lent.radar->cells * command->cell_mm / 1000 + 1);
+}
+
 static enum lm_refusal start(struct lm_picture *p, const struct lm_sar_command *patch,
                              uint64_t now_us)
 {
@@ -84,6 +90,7 @@ static enum lm_refusal start(struct lm_picture *p, const struct lm_sar_command *
     if (is_in_flight && !resolve_command(p, &command, &flight)) {
         return LM_REFUSED_NAV;
     }
+    lm_unit_map_look(map, command.centre, patch_reach_m(p, &command));
     const struct lm_sar_setup scene = {
         .flight = is_in_flight ? &flight : NULL,
         .targets = &map->target_set,

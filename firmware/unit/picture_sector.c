@@ -153,6 +153,18 @@ static void join_exercise(struct lm_picture *p, uint64_t now_us)
     p->next_line_us = now_us > behind_us ? now_us - behind_us : 0;
 }
 
+/* Turn the map to what the sweep will show. 3/2 is more than half the diagonal of a window. */
+static void look(struct lm_picture *p)
+{
+    const struct lm_sector *s = &p->sector;
+    const uint32_t range_m = p->lent.radar->range[s->command.range_index].range_m;
+    const uint32_t half_m = range_m * p->lent.radar->fov[s->command.fov].window_permille / 1000;
+    const bool is_window = lm_sector_is_window(s);
+    lm_unit_map_look(p->lent.map,
+                     is_window ? s->command.centre : lm_ownship_position(p->lent.ownship),
+                     is_window ? half_m * 3 / 2 : range_m);
+}
+
 static enum lm_sweep begin(struct lm_picture *p, uint64_t now_us)
 {
     if (!lm_sector_is_at_edge(&p->sector)) {
@@ -166,6 +178,7 @@ static enum lm_sweep begin(struct lm_picture *p, uint64_t now_us)
     p->is_recentred = false;
     const struct lm_platform platform = platform_of(p);
     p->sector.is_shared = p->lent.exercise->is_told;
+    look(p);
     lm_sector_begin(&p->sector, &p->lent.map->tiles, &platform);
     if (p->sector.is_shared) {
         join_exercise(p, now_us);

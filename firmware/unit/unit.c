@@ -50,9 +50,9 @@ int lm_unit_init(struct lm_unit *u, const struct lm_board *board)
         return LM_ERR_RANGE;
     }
     u->board = board;
-    const struct lm_unit_map_lent map = {board->flash,           board->tile_pool,
-                                         board->tile_pool_bytes, board->flash_poll_limit,
-                                         board->radar,           board->bus_profile != NULL};
+    const struct lm_unit_map_lent map = {
+        board->flash, board->tile_pool,           board->tile_pool_bytes, board->flash_poll_limit,
+        board->radar, board->bus_profile != NULL, board->images};
     const int status = lm_unit_map_open(&u->map, &map);
     if (status != LM_OK) {
         return status;

@@ -76,11 +76,12 @@ static int read_bus(struct lm_unit_map *m, const struct lm_unit_map_lent *lent)
 }
 
 /* Open the tables, and see that the radar is the one for this ground. */
-static int open_tables(struct lm_unit_map *m, const struct lm_unit_map_lent *lent)
+static int open_tables(struct lm_unit_map *m, const struct lm_unit_map_lent *lent,
+                       const struct lm_flash_part *part)
 {
     m->radar = lent->radar ? lent->radar : &lm_radar_default;
     m->radar_origin = lent->radar ? LM_RADAR_OF_BOARD : LM_RADAR_BUILT_IN;
-    int status = lm_db_open(&m->db, lent->flash, lent->flash_poll_limit);
+    int status = lm_db_open_part(&m->db, lent->flash, part, lent->flash_poll_limit);
     if (status == LM_OK && !lent->radar && m->db.radar_bytes != 0) {
         status = read_radar(m, lent->flash_poll_limit);
     }
@@ -90,18 +91,106 @@ static int open_tables(struct lm_unit_map *m, const struct lm_unit_map_lent *len
     return status != LM_OK || m->db.sensor == m->radar->sensor ? status : LM_ERR_SENSOR;
 }
 
+/* Put the image that was opened last at its place: behind those whose cells are as fine. */
+static void sort_in(struct lm_unit_map *m)
+{
+    uint32_t at = m->image_count++;
+    struct lm_db *image = &m->images[LM_IMAGES_MAX];
+    *image = m->images[at];
+    for (; at > 0 && m->images[at - 1].shift0 > image->shift0; at--) {
+        m->images[at] = m->images[at - 1];
+    }
+    m->images[at] = *image;
+}
+
+/* Open an image beside the first. */
+static int open_further(struct lm_unit_map *m, const struct lm_unit_map_lent *lent,
+                        const struct lm_flash_part *part)
+{
+    struct lm_db *image = &m->images[m->image_count];
+    int status = lm_db_open_part(image, lent->flash, part, lent->flash_poll_limit);
+    if (status == LM_OK) {
+        status = lm_images_judge(&m->db, image);
+    }
+    if (status == LM_OK) {
+        sort_in(m);
+    }
+    return status;
+}
+
+/* Open the images of the parts. The first that can be used brings the tables. */
+static void open_parts(struct lm_unit_map *m, const struct lm_unit_map_lent *lent)
+{
+    for (uint32_t i = 0; i < LM_IMAGES_MAX && lent->parts[i].bytes != 0; i++) {
+        const struct lm_flash_part *part = &lent->parts[i];
+        if (LM_IMAGES_MAX > 1 && m->image_count > 0) {
+            m->part_status[i] = open_further(m, lent, part);
+            continue;
+        }
+        m->part_status[i] = m->open_status = open_tables(m, lent, part);
+        if (m->open_status == LM_OK) {
+            m->images[m->image_count++] = m->db;
+        }
+    }
+    if (LM_IMAGES_MAX > 1 && m->image_count > 0) {
+        lm_images_view(&m->db, m->images, m->image_count);
+    }
+}
+
+static int open_tiles(struct lm_unit_map *m, const struct lm_unit_map_lent *lent)
+{
+    void *const pool = lent->tile_pool;
+    if (LM_IMAGES_MAX == 1 || m->image_count == 1) {
+        return lm_tile_cache_init(&m->tiles, &m->db, pool, lent->tile_pool_bytes,
+                                  lent->flash_poll_limit);
+    }
+    return lm_tile_cache_init_over(&m->tiles, &m->db, m->images, m->image_count, pool,
+                                   lent->tile_pool_bytes, lent->flash_poll_limit);
+}
+
 int lm_unit_map_open(struct lm_unit_map *m, const struct lm_unit_map_lent *lent)
 {
+    const struct lm_flash_part whole[LM_IMAGES_MAX] = {{0, lent->flash->size_bytes}};
+    struct lm_unit_map_lent all = *lent;
     memset(m, 0, sizeof *m);
-    m->open_status = open_tables(m, lent);
-    m->is_usable = m->open_status == LM_OK;
+    m->open_status = LM_ERR_CORRUPT;
+    if (!lent->parts || lent->parts[0].bytes == 0) {
+        all.parts = whole;
+    }
+    open_parts(m, &all);
+    m->is_usable = m->image_count > 0;
     if (!m->is_usable) {
         return LM_OK;
     }
     read_targets(m, lent->flash_poll_limit);
     read_signatures(m, lent->flash_poll_limit);
-    return lm_tile_cache_init(&m->tiles, &m->db, lent->tile_pool, lent->tile_pool_bytes,
-                              lent->flash_poll_limit);
+    return open_tiles(m, lent);
+}
+
+uint32_t lm_unit_map_refused(const struct lm_unit_map *m)
+{
+    uint32_t refused = 0;
+    for (uint32_t i = 0; i < LM_IMAGES_MAX && m->is_usable; i++) {
+        refused += m->part_status[i] != LM_OK;
+    }
+    return refused;
+}
+
+void lm_unit_map_look(struct lm_unit_map *m, struct lm_position place, uint32_t reach_m)
+{
+    if (LM_IMAGES_MAX > 1 && m->image_count > 1) {
+        lm_images_look(&m->db, m->images, m->image_count, place, reach_m);
+    }
+}
+
+static const struct lm_db *image_at(const struct lm_unit_map *m, struct lm_position place)
+{
+    return &m->images[LM_IMAGES_MAX > 1 ? lm_images_at(m->images, m->image_count, place) : 0];
+}
+
+int32_t lm_unit_map_geoid_m_q6(const struct lm_unit_map *m, struct lm_position place)
+{
+    return lm_geoid_reader_height_m_q6(&m->geoid, image_at(m, place), place);
 }
 
 struct lm_text lm_unit_map_refusal(const struct lm_unit_map *m)
@@ -123,7 +212,7 @@ void lm_unit_map_service(struct lm_unit_map *m, const struct lm_position *aircra
     if (m->is_usable) {
         if (aircraft) {
             lm_tile_cache_keep_around(&m->tiles, *aircraft);
-            lm_geoid_reader_service(&m->geoid, &m->tiles, *aircraft);
+            lm_geoid_reader_service(&m->geoid, &m->tiles, image_at(m, *aircraft), *aircraft);
         }
         lm_chips_service(&m->chips, &m->tiles);
         lm_tile_cache_service(&m->tiles, now_us, TILE_READS_A_STEP);

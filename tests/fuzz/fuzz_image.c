@@ -46,9 +46,9 @@ static void read_geoid_page(struct lm_tile_cache *cache, struct lm_position plac
 {
     struct lm_geoid_reader *reader = calloc(1, sizeof *reader);
     FUZZ_ASSERT(reader);
-    lm_geoid_reader_service(reader, cache, place);
+    lm_geoid_reader_service(reader, cache, cache->db, place);
     lm_tile_cache_service(cache, 0, POLLS);
-    lm_geoid_reader_service(reader, cache, place);
+    lm_geoid_reader_service(reader, cache, cache->db, place);
     const int32_t height_m_q6 = lm_geoid_reader_height_m_q6(reader, cache->db, place);
     FUZZ_ASSERT(height_m_q6 >= -(1 << 20) && height_m_q6 <= 1 << 20);
     free(reader);

@@ -350,6 +350,7 @@ static int open_again(struct sim *s, const struct bench_bus *bus)
     const struct bench_glass glass = {(uint16_t)s->replay.head.width_px,
                                       (uint16_t)s->replay.head.height_px, o->glass};
     const struct bench_scene scene = {.database = o->database,
+                                      .further = {o->further[0], o->further[1], o->further[2]},
                                       .radar = o->radar ? &s->radar : NULL,
                                       .replay = &s->replay,
                                       .is_any_replayed = o->is_any_replayed};
@@ -685,20 +686,38 @@ static int open_bezel(struct sim *s)
     return 0;
 }
 
-/* The unit runs without a database, too. */
-static void warn_of_database(const struct sim *s)
+/* The unit runs without an image, too. */
+static void warn_of_image(const struct lm_unit_map *map, const char *path, int status,
+                          bool is_further)
 {
-    const char *const path = s->options.database;
-    const struct lm_unit_map *map = &s->bench.unit->map;
-    if (map->open_status == LM_ERR_VERSION) {
+    if (status == LM_ERR_VERSION) {
         hs_warn(path, "`landmass-db convert OLD NEW` makes a new image of an old one",
                 "is a flash image of another version");
-    } else if (map->open_status == LM_ERR_SENSOR) {
+    } else if (status == LM_ERR_SENSOR && is_further) {
+        hs_warn(path, "build both for one radar",
+                "is not shown: its reflectivity is of another band than that of --db");
+    } else if (status == LM_ERR_SENSOR) {
         hs_warn(path, "build it for this radar, or name its own with --radar",
                 "its reflectivity is of band %s, the radar's is %s", lm_sensor_word(map->db.sensor),
                 lm_sensor_word(map->radar->sensor));
-    } else if (!map->is_usable) {
+    } else if (status == LM_ERR_TABLE && is_further) {
+        hs_warn(path, "build both with one class table, and give the radar table to --db alone",
+                "is not shown: its classes or its radar table are not those of --db");
+    } else if (status != LM_OK) {
         hs_warn(path, "landmass-db verify tells what is wrong", "is no usable flash image");
+    }
+}
+
+static void warn_of_database(const struct sim *s)
+{
+    const struct options *o = &s->options;
+    const struct lm_unit_map *map = &s->bench.unit->map;
+    uint32_t part = 1;
+    warn_of_image(map, o->database, map->part_status[0], false);
+    for (uint32_t i = 0; i < LM_IMAGES_MAX - 1; i++) {
+        if (o->further[i]) {
+            warn_of_image(map, o->further[i], map->part_status[part++], true);
+        }
     }
 }
 
@@ -779,6 +798,7 @@ static int run_flight(struct sim *s, const struct bench_bus *bus)
     const struct record_sink sink = {s, put_line};
     const struct bench_glass glass = {o->width_px, o->height_px, o->glass};
     const struct bench_scene scene = {.database = o->database,
+                                      .further = {o->further[0], o->further[1], o->further[2]},
                                       .radar = o->radar ? &s->radar : NULL,
                                       .recorder = o->record ? &s->recorder : NULL,
                                       .sink = &sink};

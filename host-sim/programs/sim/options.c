@@ -116,6 +116,10 @@ static bool read_table(struct options *o, struct raw *raw, int argc, char **argv
                     profile_2 = {take_profile, &o->profile_2};
     const struct hs_option options[] = {
         {"db", HS_INPUT, &o->database, 0, 0, "FILE", "flash image made by landmass-db build", true},
+        {"db2", HS_INPUT, &o->further[0], 0, 0, "FILE",
+         "a second image; at each place the finest that has data there answers", false},
+        {"db3", HS_INPUT, &o->further[1], 0, 0, "FILE", "a third", false},
+        {"db4", HS_INPUT, &o->further[2], 0, 0, "FILE", "a fourth", false},
         {"bus", HS_INPUT, &o->bus_log, 0, 0, "FILE.log",
          "take the bus from a candump -L log, in flight time from its first frame", false},
         {"can", HS_TEXT, &o->can_interface, 0, 0, "IFACE",

@@ -5,20 +5,22 @@
 #include "lm/bus_event.h"
 #include "lm/bus_profile.h"
 #include "lm/glass_options.h"
+#include "lm/port.h"
 
 #include <stdbool.h>
 #include <stdint.h>
 
 struct options {
     const char *database, *radar, *bus_log, *can_interface, *bus_out, *script, *png_folder;
-    const char *record, *replay; /* recordings to be written, and to be shown */
-    double from_s;               /* into the recording */
-    double speed;                /* of a recording in the window */
-    bool is_any_replayed;        /* what differs from the recording is a warning */
-    double start_s;              /* into the bus log */
-    double seconds;              /* 0: to the end of the bus log, or for ever */
-    uint32_t every;              /* of the pictures for --png; 0: only those the script asks for */
-    uint32_t seed;               /* of the noise */
+    const char *further[LM_IMAGES_MAX - 1]; /* images beside the database; NULL: none there */
+    const char *record, *replay;            /* recordings to be written, and to be shown */
+    double from_s;                          /* into the recording */
+    double speed;                           /* of a recording in the window */
+    bool is_any_replayed;                   /* what differs from the recording is a warning */
+    double start_s;                         /* into the bus log */
+    double seconds;                         /* 0: to the end of the bus log, or for ever */
+    uint32_t every; /* of the pictures for --png; 0: only those the script asks for */
+    uint32_t seed;  /* of the noise */
     uint16_t width_px, height_px;
     bool has_window, has_bezel, is_quiet;
     int heading;                          /* of the bus: 0 true, 1 magnetic */

@@ -30,6 +30,13 @@ _Static_assert(LM_TILE_REQUESTS >= 16 && LM_TILE_REQUESTS <= 1024 &&
 _Static_assert(LM_TILE_SLOTS_MAX >= 16 && LM_TILE_SLOTS_MAX <= 4096,
                "LM_TILE_SLOTS_MAX out of range");
 
+/* Images that a unit shows as one map (lm/images.h). 1..4; 7 kB each. With 1 the code for several
+ * falls away. */
+#ifndef LM_IMAGES_MAX
+#define LM_IMAGES_MAX 4
+#endif
+_Static_assert(LM_IMAGES_MAX >= 1 && LM_IMAGES_MAX <= 4, "LM_IMAGES_MAX out of range");
+
 /* Targets of the image that are held in memory (lm/target.h). 1..1024; 640 bytes each. */
 #ifndef LM_TARGETS_MAX
 #define LM_TARGETS_MAX 64

@@ -31,6 +31,7 @@
 #include <stdbool.h>
 #include <stdint.h>
 
+#include "lm/config.h"
 #include "lm/damage.h"
 #include "lm/refusal.h"
 #include "lm/status.h"
@@ -56,6 +57,11 @@ struct lm_flash {
      * - LM_OK, once: the bytes are there.
      * - LM_ERR_IO, once: the device failed. The bytes at the destination are unspecified. */
     int (*read_poll)(void *ctx);
+};
+
+/* A part of a flash that holds an image; of no bytes: there is none. */
+struct lm_flash_part {
+    uint64_t offset, bytes;
 };
 
 /* A CAN frame, as it arrived or as it is to be sent. */

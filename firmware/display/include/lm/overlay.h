@@ -21,8 +21,8 @@ enum lm_flag {
     LM_FLAG_NAV_STALE = 1 << 0, /* position too old: the sweep stands still */
     LM_FLAG_NAV_DEAD = 1 << 1,  /* no position: the picture is removed */
     LM_FLAG_DB = 1 << 2,        /* no usable database: nothing to show */
-    LM_FLAG_TILE = 1 << 3,      /* map records failed within the last seconds, or a read does not
-                                   end: parts are coarse */
+    LM_FLAG_TILE = 1 << 3,      /* map records failed within the last seconds, a read does not end,
+                                   or one of several images is refused: parts are coarse */
     LM_FLAG_BUS = 1 << 4,       /* the bus is down or silent */
     LM_FLAG_FROZEN = 1 << 5,    /* the operator holds the picture */
     LM_FLAG_OFF_MAP = 1 << 6,   /* most of the picture lies outside the map */

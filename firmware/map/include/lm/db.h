@@ -150,7 +150,9 @@ _Static_assert(sizeof(struct lm_classes) == 1056, "the record must be what FORMA
  * afterwards. */
 struct lm_db {
     const struct lm_flash *flash; /* borrowed as long as the image is in use */
+    uint64_t base;                /* where the image begins in the flash, bytes */
     uint8_t lod_count, shift0;    /* LODs are 0..lod_count - 1, finest to coarsest */
+    uint8_t finest; /* LOD that pictures of this place begin with: 0, but see lm/images.h */
     uint16_t band_count;
     uint32_t entry_count, record_count;   /* directory entries; tile records */
     uint32_t tiles_size, detail_size;     /* of TILES and DETAIL, in units of LM_DB_PLACE_BYTES */
@@ -160,6 +162,7 @@ struct lm_db {
     uint64_t directory_offset, records_offset, detail_offset, targets_offset;
     uint64_t signatures_offset, chips_offset, radar_offset, bus_offset;
     uint32_t radar_bytes; /* of the radar table's record; 0 if the image has no section RADAR */
+    uint32_t radar_crc;   /* of it, as the header says */
     uint32_t bus_bytes;   /* of the bus table's record; 0 if the image has no section BUS */
     uint8_t sensor;       /* enum lm_sensor: band of the reflectivity */
     int32_t mean_elevation_m_q6; /* of the land in the image; within 2^20 */
@@ -213,6 +216,10 @@ int lm_db_read(const struct lm_flash *flash, uint64_t offset, void *destination,
  *
  * `db` keeps `flash`. Cost: some reads of the flash, and 1 KiB of stack for the header. */
 int lm_db_open(struct lm_db *db, const struct lm_flash *flash, uint32_t poll_limit);
+
+/* The same of an image in a part of the flash. No offset or size in *db then reaches outside it. */
+int lm_db_open_part(struct lm_db *db, const struct lm_flash *flash,
+                    const struct lm_flash_part *part, uint32_t poll_limit);
 
 /* Zone of a latitude, 0..3: cells are 2^zone wider in longitude. Borders are at 61.875, 73.125 and
  * 84.375 degrees, north and south: 11, 13 and 15 sixteenths of a quarter turn. */

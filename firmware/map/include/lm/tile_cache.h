@@ -49,6 +49,7 @@
 
 #include "lm/config.h"
 #include "lm/db.h"
+#include "lm/tile_fill.h"
 #include "lm/tile_unpack.h"
 
 /* State of a slot. */
@@ -79,6 +80,7 @@ struct lm_tile_slot {
     uint16_t next;         /* slot in its chain, or LM_SLOT_NONE */
     uint8_t lod, state;
     uint8_t detail_size; /* 0: it has none */
+    uint8_t image;       /* that the tile is from: its first, if others filled it */
 };
 
 /* LM_SLOT_NONE is the index that ends a chain. Chains are per LOD. */
@@ -88,7 +90,8 @@ enum { LM_SLOT_NONE = LM_TILE_SLOTS_MAX, LM_TILE_CHAINS = 1024 };
 struct lm_tile_key {
     uint32_t row, column;
     uint32_t entry; /* in the directory */
-    uint8_t lod;
+    uint8_t lod;    /* of the cache */
+    uint8_t image;
 };
 
 /* Another part's read of the flash, done between two tiles because the flash does one at a time. */
@@ -101,12 +104,15 @@ struct lm_flash_request {
 
 /* Tile cache. All members but `count` are private. */
 struct lm_tile_cache {
-    const struct lm_db *db; /* borrowed as long as the cache is in use */
-    struct lm_tile *pool;   /* borrowed as long, too: one record a slot */
-    uint32_t slot_count;    /* of the pool; at most LM_TILE_SLOTS_MAX */
-    bool is_top_resident;   /* the coarsest LOD is, whole */
-    uint32_t clock;         /* look-ups so far */
-    uint64_t now_us;        /* of the last service */
+    const struct lm_db *db; /* borrowed as long as the cache is in use; its LODs are the cache's */
+    const struct lm_db *images; /* borrowed likewise: what is read, the finest first */
+    uint32_t image_count;
+    uint32_t mounted;     /* bit n: image n answers */
+    struct lm_tile *pool; /* borrowed as long, too: one record a slot */
+    uint32_t slot_count;  /* of the pool; at most LM_TILE_SLOTS_MAX */
+    bool is_top_resident; /* the coarsest LOD is, whole */
+    uint32_t clock;       /* look-ups so far */
+    uint64_t now_us;      /* of the last service */
 
     struct lm_tile_slot
         slots[LM_TILE_SLOTS_MAX + 1];               /* the last one, at which chains end, is free */
@@ -118,8 +124,13 @@ struct lm_tile_cache {
     uint16_t reading_slot; /* LM_SLOT_NONE when idle */
     bool is_reading_entry; /* first the directory entry, then the record */
     bool is_unpacking;     /* then, if the record is compressed, no read: it is being unpacked */
+    bool is_refused;       /* the flash has refused the read */
+    bool is_stale;         /* it was begun before lm_tile_cache_mount: nobody wants it */
     struct lm_tile_unpack unpack;
-    uint32_t reading_entry;
+    struct lm_tile_key reading; /* what is read into the slot, or to fill its gaps */
+    bool has_gaps;              /* the slot's tile is there, and what is read fills its gaps */
+    bool is_filling;            /* it is filled now, and no read is under way */
+    struct lm_tile_fill fill;
     struct lm_tile_entry entry;
     struct lm_flash_request *request; /* borrowed while it waits or is being read; NULL if none */
     bool is_reading_request;
@@ -149,6 +160,12 @@ struct lm_tile_cache {
  * usable. A tile of the coarsest LOD that fails is counted, not fatal. */
 int lm_tile_cache_init(struct lm_tile_cache *c, const struct lm_db *db, void *pool,
                        size_t pool_bytes, uint32_t poll_limit);
+
+/* The same over several images in one flash (lm/images.h). `db` has the LODs of all of them. Of the
+ * pool the last tile is kept for filling. */
+int lm_tile_cache_init_over(struct lm_tile_cache *c, const struct lm_db *db,
+                            const struct lm_db *images, uint32_t image_count, void *pool,
+                            size_t pool_bytes, uint32_t poll_limit);
 
 /* Of a coarsest LOD that is not resident whole, request the nine tiles around a place and mark them
  * as used: whatever is late within some hundred kilometres of it, one of them answers. Call in
@@ -239,6 +256,14 @@ bool lm_tile_cache_read(struct lm_tile_cache *c, struct lm_flash_request *reques
  * Cost: the check of a record for each tile that is complete, a pass over the slots for each tile
  * that is begun, and lm_tile_unpack_run for each part, which costs half a check. */
 void lm_tile_cache_service(struct lm_tile_cache *c, uint64_t now_us, uint32_t reads);
+
+/* The images of a cache of lm_tile_cache_init_over have changed, or its LODs: image_count of them,
+ * of which those answer from now on that are bits of `mounted`. All tiles leave the cache, and
+ * requests are forgotten. A coarsest LOD that was resident whole is no longer. */
+void lm_tile_cache_mount(struct lm_tile_cache *c, uint32_t image_count, uint32_t mounted);
+
+/* True if no read is under way that was begun before lm_tile_cache_mount. */
+bool lm_tile_cache_is_drained(const struct lm_tile_cache *c);
 
 /* True if no request waits and nothing is being read. */
 bool lm_tile_cache_is_idle(const struct lm_tile_cache *c);

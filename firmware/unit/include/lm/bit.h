@@ -27,7 +27,8 @@ struct lm_text lm_sender_fault(const struct lm_unit *u);
 /* The text of a row, 0..LM_BIT_ROWS - 1; it may be empty:
  *
  *     0..2    version, title and size of the image; behind the version the slot that is flown, or
- *             how far a load into the other one is
+ *             how far a load into the other one is; behind the title how many further images
+ *             answer
  *     3..15   counters, two in a row, each a name and its number; the last is where the radar table
  *             in use comes from, and its name
  *     16      flags that are raised now

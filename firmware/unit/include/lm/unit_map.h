@@ -9,6 +9,7 @@
 #include "lm/bus_record.h"
 #include "lm/chips.h"
 #include "lm/geoid_reader.h"
+#include "lm/images.h"
 #include "lm/radar.h"
 #include "lm/target.h"
 #include "lm/text.h"
@@ -29,7 +30,12 @@ struct lm_unit_map {
                       * LM_ERR_SENSOR */
     bool is_usable;  /* false: the image cannot be used, and nothing below save db.sensor where the
                       * status is LM_ERR_SENSOR */
-    struct lm_db db;
+    struct lm_db db; /* the image; of several the view of them (lm/images.h), and its tables,
+                      * targets and signatures are those of the first that opens */
+    struct lm_db images[LM_IMAGES_MAX + 1]; /* the finest first; the last one is for sorting */
+    uint32_t image_count;                   /* that answer; 0: not usable */
+    int part_status[LM_IMAGES_MAX]; /* of the board's parts of the flash, each: as open_status, or
+                                     * that of lm_images_judge; LM_OK also of those it has not */
     struct lm_tile_cache tiles;
     struct lm_geoid_reader geoid;
     struct lm_target targets[LM_TARGETS_MAX];
@@ -53,6 +59,8 @@ struct lm_unit_map_lent {
     const struct lm_radar *radar; /* the board's table, which lm_radar_check has passed; NULL: the
                                    * image's, or the one that is built in where it has none */
     bool has_bus_profile;         /* the board has its own: the image's is not read */
+    const struct lm_flash_part *parts; /* LM_IMAGES_MAX; the first of no bytes ends them. None: the
+                                        * flash has one image, at its start */
 };
 
 /* Open the image: choose the radar, read tables, coarsest LOD, targets and signatures. Waits for
@@ -67,6 +75,15 @@ int lm_unit_map_open(struct lm_unit_map *m, const struct lm_unit_map_lent *lent)
 /* Why the image is refused although it is whole, in words: "IMAGE KU  RADAR X", "OTHER VERSION".
  * Empty if it is not refused, or damaged. */
 struct lm_text lm_unit_map_refusal(const struct lm_unit_map *m);
+
+/* Turn the map to a place before a picture of what is within reach of it: lm_images_look. */
+void lm_unit_map_look(struct lm_unit_map *m, struct lm_position place, uint32_t reach_m);
+
+/* Height of mean sea level above the ellipsoid at a place, metres * 64. */
+int32_t lm_unit_map_geoid_m_q6(const struct lm_unit_map *m, struct lm_position place);
+
+/* Number of images that the board has and a usable map is without. */
+uint32_t lm_unit_map_refused(const struct lm_unit_map *m);
 
 /* Finish and start reads of tiles and chips. Call in every step. `aircraft` is where the aircraft
  * is, or NULL while that is not known. Never waits. */

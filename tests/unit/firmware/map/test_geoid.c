@@ -262,7 +262,7 @@ static void close_paged(struct paged *p)
 static double fly_to(struct paged *p, struct lm_position place)
 {
     for (int i = 0; i < 10; i++) {
-        lm_geoid_reader_service(&p->reader, &p->tiles, place);
+        lm_geoid_reader_service(&p->reader, &p->tiles, &p->db, place);
         lm_tile_cache_service(&p->tiles, 0, 4);
     }
     return lm_geoid_reader_height_m_q6(&p->reader, &p->db, place) / 64.0;
@@ -296,7 +296,7 @@ TEST(until_a_page_is_there_and_where_there_is_none_the_image_s_height_counts)
     const struct lm_position on = {p->pages->page[5].south + 7, p->pages->page[5].west + 9};
     p->db.geoid_m_q6 = 48 * 64;
     assert_int_equal(lm_geoid_reader_height_m_q6(&p->reader, &p->db, on), 48 * 64);
-    lm_geoid_reader_service(&p->reader, &p->tiles, on);
+    lm_geoid_reader_service(&p->reader, &p->tiles, &p->db, on);
     assert_int_equal(lm_geoid_reader_height_m_q6(&p->reader, &p->db, on), 48 * 64);
     assert_true(fly_to(p, on) != 48);
     assert_true(fly_to(p, (struct lm_position){on.latitude, 0}) == 48);

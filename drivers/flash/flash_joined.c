@@ -1,0 +1,36 @@
+#include "drv/flash_joined.h"
+
+#include <stddef.h>
+
+static int read_start(void *ctx, uint64_t offset, void *destination, uint32_t length)
+{
+    struct drv_flash_joined *j = ctx;
+    const uint64_t number = offset >> DRV_FLASH_JOINED_LOG2;
+    if (number >= j->count) {
+        return LM_ERR_RANGE;
+    }
+    j->reading = j->flash[number];
+    return j->reading->read_start(j->reading->ctx, offset - (number << DRV_FLASH_JOINED_LOG2),
+                                  destination, length);
+}
+
+static int read_poll(void *ctx)
+{
+    const struct drv_flash_joined *j = ctx;
+    return j->reading->read_poll(j->reading->ctx);
+}
+
+void drv_flash_joined_open(struct drv_flash_joined *j, const struct lm_flash *const flash[],
+                           uint32_t count, struct lm_flash_part *parts)
+{
+    *j = (struct drv_flash_joined){.count = count, .reading = flash[0]};
+    for (uint32_t i = 0; i < LM_IMAGES_MAX; i++) {
+        const uint64_t offset = (uint64_t)i << DRV_FLASH_JOINED_LOG2;
+        parts[i] = (struct lm_flash_part){offset, i < count ? flash[i]->size_bytes : 0};
+        j->flash[i] = i < count ? flash[i] : NULL;
+    }
+    j->port = (struct lm_flash){.ctx = j,
+                                .size_bytes = parts[count - 1].offset + parts[count - 1].bytes,
+                                .read_start = read_start,
+                                .read_poll = read_poll};
+}

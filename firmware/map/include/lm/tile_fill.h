@@ -1,0 +1,51 @@
+/* Tile fill: where a tile has no data, it takes what a tile of another image has there, which is
+ * the same tile or an ancestor of it.
+ *
+ *     tile          source, one generation up        filled
+ *     +--------+    +----+----+                      +--------+
+ *     |aaaa    |    | b  | b  |                      |aaaabbbb|
+ *     |aa      |    +----+----+                      |aabbbbbb|
+ *     |        |    | c  | c  |                      |cccccccc|
+ *     +--------+    +----+----+                      +--------+
+ *
+ * - A cell of class LM_DB_CLASS_NONE takes the source's cell that it lies in. All others stay.
+ * - A post stays if it is the corner of a cell that stays. Others take the source's elevation, as
+ *   its readers would blend it there: hence between a cell that stays and one that does not, the
+ *   terrain goes from one to the other within one cell.
+ * - The tile's base is lowered and its steps are widened as far as the source's elevations need.
+ *   Steps that stay lose nothing.
+ *
+ * Both tiles have passed lm_tile_check, or have been filled. */
+#ifndef LM_TILE_FILL_H
+#define LM_TILE_FILL_H
+
+#include <stdbool.h>
+#include <stdint.h>
+
+#include "lm/db.h"
+
+/* A fill under way. All members are private. */
+struct lm_tile_fill {
+    struct lm_tile *tile;         /* borrowed */
+    const struct lm_tile *source; /* borrowed */
+    uint32_t generations;         /* that the source is coarser */
+    int32_t row0, column0; /* of the tile's own first cell in the source, in cells of the tile */
+    uint32_t row;          /* rows done, of both passes */
+    int32_t least_m_q6, most_m_q6; /* of all posts */
+    int32_t base_m_q6;             /* of before */
+    uint8_t post_shift;            /* of before */
+};
+
+/* True if a cell of the tile or of its border has no data. Cost: 4 instructions a point. */
+bool lm_tile_has_gaps(const struct lm_tile *tile);
+
+/* Begin. `generations` are 0..15: the source is the tile (row >> generations, column >>
+ * generations). */
+void lm_tile_fill_begin(struct lm_tile_fill *f, struct lm_tile *tile, const struct lm_tile *source,
+                        uint32_t generations);
+
+/* Do one of 132 parts. Returns LM_BUSY: call again; or LM_OK: the tile is filled. Between the two
+ * its posts mean nothing. Cost: some 3,000 instructions. */
+int lm_tile_fill_run(struct lm_tile_fill *f);
+
+#endif

@@ -1,0 +1,358 @@
+/* Several images as one map: at each place the finest that has data answers, and it alone. */
+#include "lm/images.h"
+
+#include "check.h"
+#include "hs/angle.h"
+#include "lm/scan_line.h"
+#include "lm/tile_cache.h"
+#include "memory_flash.h"
+#include "tiny_image.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum {
+    SLOTS = 120,
+    POLLS = 16,
+    THEATRE_SHIFT = 9, /* cells of 4.8 m */
+    WORLD_SHIFT = 13,  /* 76 m */
+    WORLD_LOD = WORLD_SHIFT - THEATRE_SHIFT,
+    PLACES = 1500
+};
+
+/* One image alone, or both. */
+struct map {
+    struct memory_flash flash;
+    struct lm_db db;
+    struct lm_db images[LM_IMAGES_MAX];
+    struct lm_tile_cache tiles;
+    void *pool;
+};
+
+struct fixture {
+    struct tiny_image theatre_image, world_image;
+    uint8_t *bytes; /* the theatre, then the world */
+    struct lm_flash_part parts[2];
+    struct map theatre, world, both;
+};
+
+/* Water in the world alone, trees and no data in the theatre alone. */
+static struct tiny_cell world_cell(void *ctx, const struct tiny_place *p)
+{
+    (void)ctx;
+    const bool is_water = sin(p->east_m / 300) + cos(p->north_m / 400) > 0.3;
+    return (struct tiny_cell){is_water ? -40 : -20, is_water ? TINY_WATER : TINY_SOIL, 0};
+}
+
+static struct tiny_cell theatre_cell(void *ctx, const struct tiny_place *p)
+{
+    (void)ctx;
+    if (p->east_m + 0.4 * p->north_m > 120) {
+        return (struct tiny_cell){0, TINY_NONE, 0};
+    }
+    return (struct tiny_cell){-15 + round(3 * sin(p->east_m / 20)), TINY_TREES, 3};
+}
+
+static double world_m(void *ctx, const struct tiny_place *p)
+{
+    (void)ctx;
+    return 300 + 40 * sin(p->east_m / 900) + 0.01 * p->north_m;
+}
+
+static double theatre_m(void *ctx, const struct tiny_place *p)
+{
+    (void)ctx;
+    return 700 + 25 * cos(p->north_m / 150);
+}
+
+static void build(struct tiny_image *image, uint8_t shift, uint8_t side, bool is_theatre)
+{
+    struct tiny_spec spec = tiny_spec_at(46, 11);
+    spec.shift0 = shift;
+    spec.rows = spec.columns = side;
+    spec.post_shift = is_theatre ? 0 : 2;
+    spec.cell = is_theatre ? theatre_cell : world_cell;
+    spec.elevation_m = is_theatre ? theatre_m : world_m;
+    assert_int_equal(tiny_image_build(image, &spec), 0);
+}
+
+static void open_map(struct fixture *f, struct map *m, uint32_t first, uint32_t count)
+{
+    const size_t pool_bytes = SLOTS * sizeof(struct lm_tile);
+    memory_flash_open(&m->flash, f->bytes, f->parts[1].offset + f->parts[1].bytes);
+    m->pool = malloc(pool_bytes);
+    assert_non_null(m->pool);
+    for (uint32_t i = 0; i < count; i++) {
+        assert_int_equal(
+            lm_db_open_part(&m->images[i], &m->flash.port, &f->parts[first + i], POLLS), LM_OK);
+    }
+    m->db = m->images[0];
+    lm_images_view(&m->db, m->images, count);
+    assert_int_equal(
+        lm_tile_cache_init_over(&m->tiles, &m->db, m->images, count, m->pool, pool_bytes, POLLS),
+        LM_OK);
+}
+
+static struct fixture *open_fixture(void)
+{
+    struct fixture *f = calloc(1, sizeof *f);
+    build(&f->theatre_image, THEATRE_SHIFT, 3, true);
+    build(&f->world_image, WORLD_SHIFT, 4, false);
+    f->parts[0] = (struct lm_flash_part){0, f->theatre_image.size};
+    const size_t second = (f->theatre_image.size + 63) / 64 * 64;
+    f->parts[1] = (struct lm_flash_part){second, f->world_image.size};
+    f->bytes = calloc(1, second + f->world_image.size);
+    memcpy(f->bytes, f->theatre_image.bytes, f->theatre_image.size);
+    memcpy(f->bytes + second, f->world_image.bytes, f->world_image.size);
+    open_map(f, &f->theatre, 0, 1);
+    open_map(f, &f->world, 1, 1);
+    open_map(f, &f->both, 0, 2);
+    return f;
+}
+
+static void close_fixture(struct fixture *f)
+{
+    free(f->theatre.pool);
+    free(f->world.pool);
+    free(f->both.pool);
+    free(f->bytes);
+    tiny_image_free(&f->theatre_image);
+    tiny_image_free(&f->world_image);
+    free(f);
+}
+
+static void serve(struct map *m)
+{
+    uint32_t calls = 0;
+    while (!lm_tile_cache_is_idle(&m->tiles) && ++calls < 100000) {
+        lm_tile_cache_service(&m->tiles, 0, 1);
+    }
+    assert_true(lm_tile_cache_is_idle(&m->tiles));
+}
+
+/* The cell of a map when everything that it asked for has arrived. */
+static uint16_t cell_of(struct map *m, uint8_t lod, struct lm_position at)
+{
+    (void)lm_scan_cell(&m->tiles, lod, at);
+    serve(m);
+    return lm_scan_cell(&m->tiles, lod, at);
+}
+
+static int32_t elevation_of(struct map *m, uint8_t lod, struct lm_position at)
+{
+    return lm_scan_elevation(&m->tiles, lod, at, INT32_MIN);
+}
+
+static bool has_tile(const struct lm_db *db, uint8_t lod, struct lm_position at)
+{
+    const uint32_t side = (uint32_t)db->shift0 + lod + LM_TILE_CELLS_LOG2;
+    return lod < db->lod_count &&
+           lm_db_entry(db, lod, (at.latitude + FX_BAM_90) >> side,
+                       at.longitude >> (side + lm_db_zone(at.latitude))) >= 0;
+}
+
+static bool is_none(uint16_t cell)
+{
+    return (cell >> 4 & 15) == LM_DB_CLASS_NONE;
+}
+
+/* What should answer at a place: the theatre's LOD, or the world's as the view counts it. */
+struct answer {
+    struct map *map;
+    uint8_t lod; /* of that map */
+    uint16_t cell;
+};
+
+static struct answer answer_at(struct fixture *f, uint8_t lod, struct lm_position at)
+{
+    for (; lod < f->both.db.lod_count; lod++) {
+        const bool has_theatre = has_tile(&f->theatre.db, lod, at);
+        const uint8_t there = (uint8_t)(lod > WORLD_LOD ? lod - WORLD_LOD : 0);
+        if (has_theatre && !is_none(cell_of(&f->theatre, lod, at))) {
+            return (struct answer){&f->theatre, lod, cell_of(&f->theatre, lod, at)};
+        }
+        if (has_theatre || (lod >= WORLD_LOD && has_tile(&f->world.db, there, at))) {
+            return (struct answer){&f->world, there, cell_of(&f->world, there, at)};
+        }
+    }
+    return (struct answer){&f->world, 0, LM_CELL_NONE};
+}
+
+/* A place within `reach_m` of 46 N 11 E. */
+static struct lm_position place(double reach_m)
+{
+    const double north_m = reach_m * (2.0 * rand() / RAND_MAX - 1);
+    const double east_m = reach_m * (2.0 * rand() / RAND_MAX - 1);
+    return (struct lm_position){hs_bam(46 + north_m / 111000), hs_bam(11 + east_m / 77500)};
+}
+
+static uint32_t check_places(struct fixture *f, uint8_t lod, double reach_m)
+{
+    uint32_t of_theatre = 0;
+    for (int i = 0; i < PLACES; i++) {
+        const struct lm_position at = place(reach_m);
+        const struct answer wanted = answer_at(f, lod, at);
+        assert_int_equal(cell_of(&f->both, lod, at), wanted.cell);
+        of_theatre += wanted.map == &f->theatre;
+    }
+    return of_theatre;
+}
+
+TEST(the_finest_image_with_data_answers_at_every_level)
+{
+    struct fixture *f = open_fixture();
+    srand(1);
+    for (uint8_t lod = 0; lod <= WORLD_LOD + 1; lod++) {
+        const uint32_t near = check_places(f, lod, 450), far = check_places(f, lod, 6000);
+        if (lod < f->theatre.db.lod_count) {
+            assert_in_range(near, PLACES / 3, PLACES * 2 / 3);
+        }
+        assert_true(far < PLACES / 4);
+    }
+    close_fixture(f);
+}
+
+/* Cells around a place, as far as a post of its own reaches. */
+static bool is_border(struct fixture *f, uint8_t lod, struct lm_position at)
+{
+    const struct map *here = answer_at(f, lod, at).map;
+    const fx_bam_t cell = 1u << (THEATRE_SHIFT + lod);
+    for (uint32_t k = 0; k < 9; k++) {
+        const struct lm_position beside = {at.latitude + (k / 3 - 1) * cell,
+                                           at.longitude + (k % 3 - 1) * cell};
+        if (answer_at(f, lod, beside).map != here) {
+            return true;
+        }
+    }
+    return false;
+}
+
+TEST(terrain_is_that_of_the_image_whose_cell_answers)
+{
+    struct fixture *f = open_fixture();
+    uint32_t seen[2] = {0};
+    srand(2);
+    for (int i = 0; i < PLACES; i++) {
+        const uint8_t lod = (uint8_t)(i % 3);
+        const struct lm_position at = place(430);
+        const struct answer wanted = answer_at(f, lod, at);
+        (void)cell_of(&f->both, lod, at);
+        const int32_t m_q10 = elevation_of(&f->both, lod, at);
+        const int32_t wanted_m_q10 = elevation_of(wanted.map, wanted.lod, at);
+        if (wanted.map == &f->theatre) {
+            assert_int_equal(m_q10, wanted_m_q10);
+            seen[0]++;
+        } else if (!is_border(f, lod, at) && wanted.cell != LM_CELL_NONE) {
+            /* A place is told to 1/256 of a cell of the world, and a post to 1/64 m. */
+            assert_true(abs(m_q10 - wanted_m_q10) < 1024 / 4);
+            seen[1]++;
+        }
+    }
+    assert_true(seen[0] > 200 && seen[1] > 200);
+    close_fixture(f);
+}
+
+static uintptr_t broken_from, broken_to;
+
+static bool fetch_unless_broken(void *to, const uint8_t *from, uint32_t length)
+{
+    if ((uintptr_t)from >= broken_from && (uintptr_t)from < broken_to) {
+        return false;
+    }
+    memcpy(to, from, length);
+    return true;
+}
+
+static void check_world_alone(struct fixture *f)
+{
+    for (int i = 0; i < 200; i++) {
+        const struct lm_position at = place(2000);
+        const uint16_t wanted = cell_of(&f->world, 0, at);
+        (void)cell_of(&f->both, 0, at);
+        (void)cell_of(&f->both, 0, at); /* what failed has asked for the level above */
+        for (int k = 0; k < WORLD_LOD; k++) {
+            (void)cell_of(&f->both, 0, at);
+        }
+        assert_int_equal(cell_of(&f->both, 0, at), wanted);
+    }
+}
+
+TEST(where_the_theatre_cannot_be_read_the_world_answers)
+{
+    struct fixture *f = open_fixture();
+    srand(3);
+    broken_from = (uintptr_t)f->bytes;
+    broken_to = broken_from + f->parts[0].bytes;
+    f->both.flash.fetch = fetch_unless_broken;
+    lm_tile_cache_mount(&f->both.tiles, 2, 3);
+    check_world_alone(f);
+    assert_true(f->both.tiles.count.io_errors > 0);
+    close_fixture(f);
+}
+
+TEST(an_image_that_is_unmounted_is_not_read_and_has_no_tile_any_more)
+{
+    struct fixture *f = open_fixture();
+    srand(4);
+    for (uint32_t polls = 0; polls < 60; polls += 7) { /* in the middle of entry, record, filling */
+        f->both.flash.busy_polls = 3;
+        lm_tile_cache_mount(&f->both.tiles, 2, 3);
+        (void)lm_scan_cell(&f->both.tiles, 0, place(300));
+        for (uint32_t i = 0; i < polls; i++) {
+            lm_tile_cache_service(&f->both.tiles, 0, 1);
+        }
+        lm_tile_cache_mount(&f->both.tiles, 2, 2);
+        for (uint32_t i = 0; i < 8 && !lm_tile_cache_is_drained(&f->both.tiles); i++) {
+            lm_tile_cache_service(&f->both.tiles, 0, 1);
+        }
+        assert_true(lm_tile_cache_is_drained(&f->both.tiles));
+        broken_from = (uintptr_t)f->bytes;
+        broken_to = broken_from + f->parts[0].bytes;
+        f->both.flash.fetch = fetch_unless_broken;
+        const uint32_t errors = f->both.tiles.count.io_errors;
+        check_world_alone(f);
+        assert_int_equal(f->both.tiles.count.io_errors, errors);
+        f->both.flash.fetch = NULL;
+    }
+    close_fixture(f);
+}
+
+TEST(images_of_other_classes_or_another_band_are_refused)
+{
+    struct fixture *f = open_fixture();
+    struct lm_db *world = &f->world.db;
+    assert_int_equal(lm_images_judge(&f->theatre.db, world), LM_OK);
+    world->classes.entry[TINY_WATER].colour[0] ^= 1;
+    world->classes.entry[TINY_WATER].gamma_db_q8 += 7;
+    assert_int_equal(lm_images_judge(&f->theatre.db, world), LM_OK);
+    world->classes.height_dm[9]++;
+    assert_int_equal(lm_images_judge(&f->theatre.db, world), LM_ERR_TABLE);
+    world->classes.height_dm[9]--;
+    world->classes.entry[TINY_WATER].kind ^= 1;
+    assert_int_equal(lm_images_judge(&f->theatre.db, world), LM_ERR_TABLE);
+    world->classes.entry[TINY_WATER].kind ^= 1;
+    world->radar_bytes = 628;
+    assert_int_equal(lm_images_judge(&f->theatre.db, world), LM_ERR_TABLE);
+    world->radar_bytes = 0;
+    world->sensor ^= 1;
+    assert_int_equal(lm_images_judge(&f->theatre.db, world), LM_ERR_SENSOR);
+    close_fixture(f);
+}
+
+TEST(a_picture_begins_with_the_finest_image_that_it_touches)
+{
+    struct fixture *f = open_fixture();
+    const struct lm_position here = {hs_bam(46), hs_bam(11)};
+    const struct lm_position there = {hs_bam(46.1), hs_bam(11)}; /* 11 km */
+    struct map *b = &f->both;
+    lm_images_look(&b->db, b->images, 2, here, 500);
+    assert_int_equal(b->db.finest, 0);
+    lm_images_look(&b->db, b->images, 2, there, 9000);
+    assert_int_equal(b->db.finest, WORLD_LOD);
+    lm_images_look(&b->db, b->images, 2, there, 12000);
+    assert_int_equal(b->db.finest, 0);
+    assert_int_equal(lm_images_at(b->images, 2, here), 0);
+    assert_int_equal(lm_images_at(b->images, 2, there), 1);
+    close_fixture(f);
+}
