@@ -6,6 +6,7 @@
 #include "hs/error.h"
 
 #include <cpl_string.h>
+#include <ogr_srs_api.h>
 #include <stdbool.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -66,12 +67,29 @@ static bool write_bands(GDALDatasetH dataset, const float complex *pixels, int w
     return true;
 }
 
+static bool set_place(GDALDatasetH dataset, const struct db_complex_place *place)
+{
+    double degrees[6];
+    memcpy(degrees, place->degrees, sizeof degrees);
+    const OGRSpatialReferenceH crs = OSRNewSpatialReference(NULL);
+    OSRSetAxisMappingStrategy(crs, OAMS_TRADITIONAL_GIS_ORDER);
+    const bool is_set = OSRImportFromEPSG(crs, 4326) == OGRERR_NONE &&
+                        GDALSetSpatialRef(dataset, crs) == CE_None &&
+                        GDALSetGeoTransform(dataset, degrees) == CE_None;
+    OSRDestroySpatialReference(crs);
+    return is_set;
+}
+
 int db_complex_write(const char *path, const float complex *pixels, int width, int height,
-                     const struct db_complex_note *notes, int count)
+                     const struct db_complex_note *notes, int count,
+                     const struct db_complex_place *place)
 {
     const bool is_nitf = ends_with(path, ".ntf") || ends_with(path, ".nitf");
     if (!is_nitf && !ends_with(path, ".tif") && !ends_with(path, ".tiff")) {
         return hs_error(path, "call it FILE.tif or FILE.ntf", "has no known form");
+    }
+    if (is_nitf && place) {
+        return hs_error(path, "call it FILE.tif", "a NITF has no place on earth for it");
     }
     db_gdal_start();
     struct db_raster_out out = {.width = width, .type = GDT_CFloat32};
@@ -82,7 +100,8 @@ int db_complex_write(const char *path, const float complex *pixels, int width, i
         out.dataset =
             (is_nitf ? create_nitf : create_tiff)(out.temporary, width, height, notes, count);
     }
-    if (!out.dataset || !write_bands(out.dataset, pixels, width, height)) {
+    if (!out.dataset || (place && !set_place(out.dataset, place)) ||
+        !write_bands(out.dataset, pixels, width, height)) {
         hs_error(path, "check that the folder can be written and has room", "cannot be written: %s",
                  db_gdal_complaint());
         db_raster_abort(&out);

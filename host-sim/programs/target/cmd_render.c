@@ -7,7 +7,9 @@
 #include "hs/png.h"
 #include "hs/report.h"
 #include "tracer/setup.h"
+#include "tracer/squint.h"
 
+#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 
@@ -28,8 +30,10 @@ struct outputs {
     double cut_db;
     long levels;
     bool is_coherent, is_raw;
-    int weighting; /* enum focus_weighting */
-    long layer;    /* the only reflection whose echoes count, from 1; 0: all do */
+    int weighting;            /* enum focus_weighting */
+    struct complex_site site; /* latitude NAN: none */
+    double squint_deg;
+    long layer; /* the only reflection whose echoes count, from 1; 0: all do */
 };
 
 static int write_csv(const char *path, const float *power, int width, int height)
@@ -83,7 +87,8 @@ static float *coherent_power(const struct setup *s, const struct trace_records *
         power[i] = crealf(chip[i]) * crealf(chip[i]) + cimagf(chip[i]) * cimagf(chip[i]);
     }
     if (power && o->complex_file &&
-        complex_file_write(s, r, weighting, o->complex_file, chip) != 0) {
+        complex_file_write(s, r, weighting, isnan(o->site.latitude_deg) ? NULL : &o->site,
+                           o->complex_file, chip) != 0) {
         free(power);
         power = NULL;
     }
@@ -156,6 +161,9 @@ static int run(const struct setup *s, const char *records, const struct outputs 
     if (loaded != 0) {
         return HS_EXIT_FAILED;
     }
+    if (o->squint_deg != 0) {
+        squint_records(&r, o->squint_deg);
+    }
     const int result = keep_layer(&r, o->layer) == 0 ? render(s, &r, o) : -1;
     trace_records_free(&r);
     return result == 0 ? HS_EXIT_OK : HS_EXIT_FAILED;
@@ -174,10 +182,11 @@ static int check_outputs(const struct setup *s, const char *records, const struc
 int target_cmd_render(int argc, char **argv)
 {
     struct setup s = setup_default();
-    struct outputs o = {.zoom = 6, .weighting = FOCUS_TAYLOR, .cut_db = 20, .levels = 256};
+    struct outputs o = {
+        .zoom = 6, .weighting = FOCUS_TAYLOR, .cut_db = 20, .levels = 256, .site = {NAN, NAN, 0}};
     const char *records = NULL;
     long zoom = 6;
-    enum { OWN = 33, COUNT = OWN + SETUP_OPTIONS };
+    enum { OWN = 42, COUNT = OWN + SETUP_OPTIONS };
     struct hs_option options[COUNT] = {
         {"records", HS_INPUT, &records, 0, 0, "FILE.trace", "in place of a model", false},
         {"out", HS_OUTPUT, &o.png, 0, 0, "FILE.png", "the picture", false},
@@ -197,6 +206,19 @@ int target_cmd_render(int argc, char **argv)
          "grey by dB, or by the amplitude: white at the peak, or cut off below it", false},
         {"cut-db", HS_REAL, &o.cut_db, 0, 100, "DB", "how far below the peak that is", false},
         {"levels", HS_INTEGER, &o.levels, 2, 256, "N", "of grey in the PNG", false},
+        {"squint", HS_REAL, &o.squint_deg, -60, 60, "DEG",
+         "of a radar that flies level, the target on its left; positive: the target is ahead",
+         false},
+        {"latitude", HS_REAL, &o.site.latitude_deg, -89, 89, "DEG",
+         "of the target, of WGS84: puts --complex FILE.tif in its place on earth", false},
+        {"longitude", HS_REAL, &o.site.longitude_deg, -180, 180, "DEG", "likewise", false},
+        {"heading", HS_REAL, &o.site.heading_deg, -360, 360, "DEG",
+         "of the target's nose, clockwise from north", false},
+        HS_NEEDS_ROW("latitude", "complex"),
+        HS_NEEDS_ROW("latitude", "longitude"),
+        HS_NEEDS_ROW("longitude", "latitude"),
+        HS_NEEDS_ROW("heading", "latitude"),
+        HS_CLASHES_ROW("squint", "latitude"),
         HS_CLASHES_ROW("raw", "coherent|looks|resolution|pixel"),
         HS_NEEDS_ROW("tone", "out"),
         HS_NEEDS_ROW("cut-db", "tone=cut"),

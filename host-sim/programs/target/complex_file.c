@@ -3,6 +3,7 @@
 #include "gis/complex_raster.h"
 #include "hs/error.h"
 
+#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -34,8 +35,31 @@ static void make_notes(const struct setup *s, const struct trace_records *r,
     note_text(&notes[8], "CALIBRATION", "|pixel|^2 of a point: m^2; phase -4 pi range/wavelength");
 }
 
+/* Level ground at the target's height: slant range over cos(depression), and the picture turned as
+ * the radar looks. */
+static struct db_complex_place place_of(const struct complex_site *site,
+                                        const struct trace_records *r, double pixel_m)
+{
+    const double deg = 3.14159265358979323846 / 180, flattening = 1 / 298.257223563;
+    const double e2 = flattening * (2 - flattening), latitude = site->latitude_deg * deg;
+    const double w = sqrt(1 - e2 * pow(sin(latitude), 2)), a_m = 6378137;
+    const double north_m_deg = a_m * (1 - e2) / pow(w, 3) * deg;
+    const double east_m_deg = a_m * cos(latitude) / w * deg;
+    const double look = (site->heading_deg + r->look.azimuth_deg + 180) * deg;
+    const double near_m = pixel_m / cos(r->look.depression_deg * deg); /* a row down */
+    const double width = r->grid.cells_across * r->grid.cell_m / pixel_m;
+    const double height = r->grid.cells_range * r->grid.cell_m / pixel_m;
+    struct db_complex_place p = {
+        {0, cos(look) * pixel_m / east_m_deg, -sin(look) * near_m / east_m_deg, 0,
+         -sin(look) * pixel_m / north_m_deg, -cos(look) * near_m / north_m_deg}};
+    p.degrees[0] = site->longitude_deg - (width * p.degrees[1] + height * p.degrees[2]) / 2;
+    p.degrees[3] = site->latitude_deg - (width * p.degrees[4] + height * p.degrees[5]) / 2;
+    return p;
+}
+
 int complex_file_write(const struct setup *s, const struct trace_records *r,
-                       enum focus_weighting weighting, const char *path, const float complex *chip)
+                       enum focus_weighting weighting, const struct complex_site *site,
+                       const char *path, const float complex *chip)
 {
     struct db_complex_note notes[DB_COMPLEX_NOTES_MAX];
     const size_t width = r->grid.cells_across / (uint32_t)s->ratio;
@@ -48,8 +72,11 @@ int complex_file_write(const struct setup *s, const struct trace_records *r,
         memcpy(turned + row * width, chip + (height - 1 - row) * width, width * sizeof *turned);
     }
     make_notes(s, r, weighting, notes);
-    const int result =
-        db_complex_write(path, turned, (int)width, (int)height, notes, DB_COMPLEX_NOTES_MAX);
+    const double pixel_m = (double)s->ratio * r->grid.cell_m;
+    const struct db_complex_place place =
+        site ? place_of(site, r, pixel_m) : (struct db_complex_place){0};
+    const int result = db_complex_write(path, turned, (int)width, (int)height, notes,
+                                        DB_COMPLEX_NOTES_MAX, site ? &place : NULL);
     free(turned);
     return result;
 }

@@ -16,9 +16,17 @@ struct db_complex_note {
     char value[64];
 };
 
-/* Write `pixels`, the first row on top, whole or not at all. Returns 0, or -1 with the error
- * reported: another end of the name, or it cannot be written. */
+/* Where it lies on earth, degrees of WGS84: pixel (column, row), counted from the outer corner of
+ * the first, has longitude [0] + column [1] + row [2], and latitude [3] + column [4] + row [5]. */
+struct db_complex_place {
+    double degrees[6];
+};
+
+/* Write `pixels`, the first row on top, whole or not at all; `place` may be NULL. Returns 0, or -1
+ * with the error reported: another end of the name, a place in a NITF, which has none for a turned
+ * picture, or it cannot be written. */
 int db_complex_write(const char *path, const float complex *pixels, int width, int height,
-                     const struct db_complex_note *notes, int count);
+                     const struct db_complex_note *notes, int count,
+                     const struct db_complex_place *place);
 
 #endif

@@ -279,6 +279,35 @@ TEST(the_picture_before_its_last_step_is_shown)
     assert_int_equal(run("render --model slicy --out x.png --cut-db 3 2>errors"), 2);
 }
 
+/* A dihedral's seam stands in its origin: at the place that was given. Ground 5 m behind it, as the
+ * radar in the north looks, is 5 m further south: by the lengths of a degree at 45 degrees, 111,132
+ * and 78,847 m (NIMA TR8350.2). So is the heading: the same radar sees the nose turned east. */
+TEST(a_chip_lies_at_its_place_on_earth)
+{
+    assert_int_equal(
+        run("render --model dihedral --coherent --rays 1 --cells 108 --latitude 45 "
+            "--longitude 10 --heading 90 --azimuth 270 --complex place.tif --csv c.csv"),
+        0);
+    /* 54 pixels of 0.2 m of slant range: row 27 is the middle; 25 pixels down are nearer, north. */
+    assert_int_equal(
+        shell("echo '27 27 0\n27 52 0\n52 27 0' | gdaltransform place.tif >at.txt && "
+              "awk 'function near(a, b) { d = a - b; return d < 0.002 && d > -0.002 } "
+              "{ e[NR] = ($1 - 10) * 78847; n[NR] = ($2 - 45) * 111132 } "
+              "END { c = 5 / cos(15 * 3.14159265 / 180); print n[2], e[3]; "
+              "exit !(near(e[1], 0) && near(n[1], 0) && near(e[2], 0) && near(n[2], c) && "
+              "near(e[3], -5) && near(n[3], 0)) }' at.txt"),
+        0);
+    assert_int_equal(shell("gdalinfo place.tif | grep -q 'WGS 84'"), 0);
+    assert_int_equal(run("render --model dihedral --coherent --latitude 45 --longitude 10 "
+                         "--complex place.ntf 2>errors"),
+                     1);
+    assert_int_equal(shell("grep -q 'place.ntf: a NITF has no place' errors"), 0);
+    assert_int_equal(run("render --model dihedral --latitude 45 --csv c.csv 2>errors"), 2);
+    assert_int_equal(run("render --model dihedral --rays 1 --squint 30 --csv squint.csv"), 0);
+    assert_int_equal(run("render --model dihedral --rays 1 --csv square.csv"), 0);
+    assert_int_equal(shell("! cmp -s squint.csv square.csv"), 0);
+}
+
 TEST(histograms_count_every_reflection)
 {
     assert_int_equal(run("trace --model slicy --rays 1 --out s.trace --histograms h.png "
