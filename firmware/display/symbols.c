@@ -379,7 +379,7 @@ static void write_map_cell(const struct lm_glass *g, uint32_t cell_mm)
     const int32_t left = edge + 12 * column, right = g->surface.width_px - edge - 10 * column;
     struct lm_text t = {0};
     lm_text_add(&t, "MAP ");
-    lm_text_number(&t, fx_min_u32((cell_mm + 500) / 1000, 999), 1);
+    lm_text_number(&t, fx_min_u32((cell_mm + 500) / 1000, 9999), 1);
     lm_text_add(&t, "M");
     lm_write(&pen, (left + right - lm_text_width(&pen, t.words)) / 2, row_y(g, &pen, 2), t.words,
              g->palette->ink);

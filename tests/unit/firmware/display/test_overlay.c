@@ -424,3 +424,25 @@ TEST(the_arrow_of_a_patch_points_along_the_line_of_sight_and_its_n_to_the_north)
         free_surface(&s);
     }
 }
+
+/* Cells of the coarsest maps, on the smallest glass too, where elevation and longitude stand beside
+ * them. */
+TEST(the_length_of_long_map_cells_is_written)
+{
+    static const uint16_t sides_px[] = {256, 768};
+    for (size_t i = 0; i < 2; i++) {
+        const uint16_t side = sides_px[i];
+        struct lm_surface surface = make_surface(side, side);
+        const struct lm_frame frame = lm_frame_of_display(side, side);
+        const struct lm_palette palette = {.symbol = 0xFFFFFF};
+        struct lm_symbols symbols = {.coarse_mm = 2441887};
+        symbols.view = lm_view_of_patch(&frame, (struct lm_position){0, 0}, 0, 256, 5000);
+        for (int k = 0; k < side; k++) {
+            memset(surface.pixels + (size_t)k * surface.stride_px, 0, side * sizeof(uint32_t));
+        }
+        const struct lm_glass glass = {.surface = surface, .frame = &frame, .palette = &palette};
+        lm_overlay_symbols(&glass, &symbols);
+        assert_true(glass_find(&surface, "MAP 2442M", palette.symbol, palette.ink, NULL));
+        free_surface(&surface);
+    }
+}
