@@ -116,8 +116,8 @@ static int open_files(struct bench *b, const struct bench_scene *scene)
 /* The flash of the board: the file, or the files one behind the other. */
 static void lend_flash(struct bench *b)
 {
-    const struct lm_flash *flash[LM_IMAGES_MAX];
-    for (uint32_t i = 0; i < b->flash_count; i++) {
+    const struct lm_flash *flash[LM_IMAGES_MAX] = {&b->flash[0].port};
+    for (uint32_t i = 1; i < b->flash_count; i++) {
         flash[i] = &b->flash[i].port;
     }
     b->board.flash = flash[0];
