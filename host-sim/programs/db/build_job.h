@@ -12,6 +12,7 @@ struct build_settings {
     const char *classes, *radar, *bus_table, *class_raster, *reflectivity, *heights, *targets,
         *detail;
     const char *map, *unknown_codes, *terrain_unit, *terrain_datum, *geoid_grid;
+    const char *beside; /* an image that is flown together with this one */
     struct hs_list terrain;
     double cell_m;
     long shift0, seed;

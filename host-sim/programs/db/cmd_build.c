@@ -14,6 +14,8 @@
 #include "hs/options.h"
 #include "hs/report.h"
 #include "image/codes.h"
+#include "image/reader.h"
+#include "lm/images.h"
 #include "lm/radar_record.h"
 #include "lm/sensor.h"
 #include "radar/text.h"
@@ -138,6 +140,9 @@ bool build_job_read(struct build_settings *s, enum build_command command, struct
             "metres of structures and trees above the terrain; left out: the class table's height"),
         OPTION("cut-heights", HS_FLAG, may_cut_heights, 0, 0, NULL,
                "cut structures and trees above 1,000 m to that; otherwise they are an error"),
+        OPTION("beside", HS_INPUT, beside, 0, 0, "FILE.lmdb",
+               "an image that shall be flown together with this one (landmass-sim --db2);\n"
+               "the 16 heights of structures and trees are taken from it"),
         OPTION("targets", HS_INPUT, targets, 0, 0, "FILE",
                "specific targets and their signatures (docs/targets.md); left out: none"),
         OPTION("detail", HS_INPUT, detail, 0, 0, "FILE",
@@ -463,6 +468,45 @@ static int check_overlap(const struct build_context *b, const struct build_setti
                     image_longitude_degrees(a->west + (uint32_t)a->width));
 }
 
+/* The display takes images together that have one table of heights. */
+static int take_heights(struct build_context *b, const char *beside)
+{
+    struct image other;
+    if (image_open(&other, beside) != 0) {
+        return -1;
+    }
+    enum { TOP = 15 }; /* the highest */
+    const int own = b->classes.height_dm[TOP], theirs = other.db.classes.height_dm[TOP];
+    memcpy(b->classes.height_dm, other.db.classes.height_dm, sizeof b->classes.height_dm);
+    image_close(&other);
+    if (own > theirs + theirs / 50) {
+        hs_warn(beside,
+                "make the image with the highest structures first, and the others --beside it",
+                "has heights of up to %g m: what is up to %g m high here is cut to that",
+                theirs / 10.0, own / 10.0);
+    }
+    return 0;
+}
+
+/* Will the display take the image together with the one that it is made beside? */
+static int check_beside(const struct build_context *b, const char *beside)
+{
+    struct image other;
+    if (image_open(&other, beside) != 0) {
+        return -1;
+    }
+    const struct lm_db own = {.sensor = (uint8_t)b->sensor, .classes = b->classes};
+    const int status = lm_images_judge(&other.db, &own);
+    image_close(&other);
+    if (status == LM_OK) {
+        return 0;
+    }
+    return hs_error(beside,
+                    status == LM_ERR_SENSOR ? "give the --sensor of that image"
+                                            : "give the class table that it was built with",
+                    "%s", status == LM_ERR_SENSOR ? "is for another band" : "has other classes");
+}
+
 static int choose_heights(struct build_context *b)
 {
     struct build_heights *h = malloc(sizeof *h);
@@ -592,7 +636,8 @@ static int make_tables(struct build_context *b, const struct build_settings *s,
         return -1;
     }
     if (!work) {
-        return choose_heights(b);
+        const int result = choose_heights(b);
+        return result == 0 && s->beside ? take_heights(b, s->beside) : result;
     }
     memcpy(b->classes.height_dm, work->heights_dm, sizeof b->classes.height_dm);
     return 0;
@@ -823,6 +868,9 @@ int build_job_write(struct build_context *b, const struct build_settings *s,
                     const struct build_extras *extras, struct build_report *report)
 {
     uint32_t centre[2];
+    if (s->beside && check_beside(b, s->beside) != 0) {
+        return -1;
+    }
     choose_centre(b, s, centre);
     struct image_writer w;
     const struct lm_image_header header = {.shift0 = b->plan.shift0,

@@ -4,6 +4,7 @@
 #include "image/grid.h"
 #include "image/reader.h"
 #include "image/verify.h"
+#include "lm/images.h"
 
 #include "check.h"
 #include "memory_flash.h"
@@ -645,6 +646,35 @@ TEST(the_heights_of_the_codes_are_those_that_occur)
     assert_true(support_run("%s/bin/landmass-db inspect %s | grep -q '^heights:.* 300'",
                             support_build_dir(), scene_path("a.lmdb")) == 0);
     image_close(&image);
+}
+
+static double village_m(double x, double y)
+{
+    return fmin(skyline_m(x, y), 11);
+}
+
+/* Images that are flown together have one table of heights, and the user hears what that costs. */
+TEST(an_image_beside_another_has_its_heights)
+{
+    struct image first, other;
+    assert_int_equal(build_skyline(village_m, ""), 0);
+    assert_int_equal(rename(scene_path("a.lmdb"), scene_path("village.lmdb")), 0);
+    assert_int_equal(build_skyline(skyline_m, "--title Town"), 0);
+    open_sound_image(&first, "village.lmdb");
+    open_sound_image(&other, "a.lmdb");
+    assert_int_equal(lm_images_judge(&first.db, &other.db), LM_ERR_TABLE);
+    image_close(&other);
+    assert_int_equal(build_skyline(skyline_m, "--beside no.lmdb"), 1);
+    char beside[600];
+    snprintf(beside, sizeof beside, "--beside %s", scene_path("village.lmdb"));
+    assert_int_equal(build_skyline(skyline_m, beside), 0);
+    assert_true(scene_log_holds("has heights of up to 12 m: what is up to 300 m high here"));
+    open_sound_image(&other, "a.lmdb");
+    assert_int_equal(lm_images_judge(&first.db, &other.db), LM_OK);
+    assert_memory_equal(first.db.classes.height_dm, other.db.classes.height_dm,
+                        sizeof other.db.classes.height_dm);
+    image_close(&other);
+    image_close(&first);
 }
 
 TEST(heights_above_a_kilometre_are_refused_or_cut_and_counted)
