@@ -96,6 +96,7 @@ static void write_image(void)
                                      LM_IMAGE_DETAIL,
                                      LM_IMAGE_RADAR,
                                      LM_IMAGE_BUS,
+                                     LM_IMAGE_GEOID_PAGES,
                                      77};
     const struct tiny_spec spec = tiny_spec_at(46, 11);
     struct tiny_image image;
