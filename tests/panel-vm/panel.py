@@ -9,7 +9,7 @@ import time
 from fixtures import HOST, WORK, database, log
 
 WIDTH, HEIGHT = 640, 480
-SECTOR = ["80", "100", "460", "280"]  # X Y WIDTH HEIGHT of the radar picture, without marks that a freeze removes
+SECTOR = ["96", "100", "444", "280"]  # X Y WIDTH HEIGHT of the radar picture, without marks that a freeze removes
 with open(os.path.join(os.path.dirname(os.path.abspath(__file__)), "gpio-lines.txt"), encoding="utf-8") as lines:
     GPIO = [line.strip() for line in lines if not line.startswith("#")]
 RELEASED, PRESSED = 1, 0  # as the configuration has it by default: keys draw their lines to ground
