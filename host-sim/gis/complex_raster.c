@@ -13,7 +13,7 @@
 #include <string.h>
 #include <strings.h>
 
-enum { COMMENT = 80 };
+enum { COMMENT = 80, COMMENTS = 9 /* that NITF takes */ };
 
 static bool ends_with(const char *path, const char *end)
 {
@@ -25,15 +25,20 @@ static bool ends_with(const char *path, const char *end)
 static GDALDatasetH create_nitf(const char *name, int width, int height,
                                 const struct db_complex_note *notes, int count)
 {
-    char comments[DB_COMPLEX_NOTES_MAX * COMMENT + 1] = "", note[COMMENT + 1], **options = NULL;
-    for (int i = 0; i < count; i++) {
+    char comments[COMMENTS * COMMENT + 1] = "", note[COMMENT + 1], **options = NULL;
+    char title[COMMENT + 1] = "simulated complex radar picture";
+    if (count > COMMENTS) {
+        const struct db_complex_note *last = &notes[COMMENTS];
+        snprintf(title, sizeof title, "simulated; %.8s=%.60s", last->name, last->value);
+    }
+    for (int i = 0; i < count && i < COMMENTS; i++) {
         snprintf(note, sizeof note, "%s=%s", notes[i].name, notes[i].value);
         snprintf(comments + i * COMMENT, COMMENT + 1, "%-80s", note);
     }
     options = CSLSetNameValue(options, "ICAT", "SAR");
     options = CSLSetNameValue(options, "IREPBAND", ",");
     options = CSLSetNameValue(options, "ISUBCAT", "I,Q");
-    options = CSLSetNameValue(options, "FTITLE", "simulated complex radar picture");
+    options = CSLSetNameValue(options, "FTITLE", title);
     options = CSLSetNameValue(options, "ICOM", comments);
     const GDALDatasetH dataset = GDALCreate(GDALGetDriverByName("NITF"), name, width, height, 2,
                                             GDT_Float32, (void *)options);

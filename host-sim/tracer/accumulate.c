@@ -1,6 +1,7 @@
 #include "tracer/accumulate.h"
 
 #include "hs/error.h"
+#include "tracer/ends.h"
 
 #include <stdbool.h>
 #include <stdlib.h>
@@ -20,6 +21,7 @@ static void add_bounce(const struct trace_records *r, const struct reflect_law *
                        const float *in, float *out, float *picture)
 {
     const float area_m2 = (float)(r->sensor.step_across_m * r->sensor.step_up_m);
+    const bool is_plain = ends_are_plain(&r->ends);
     const struct trace_bounce *bounce = &r->bounces[b];
     struct reflect_shares s = {0, 0};
     for (uint32_t i = 0; i < bounce->count; i++) {
@@ -30,7 +32,8 @@ static void add_bounce(const struct trace_records *r, const struct reflect_law *
         const int32_t cell =
             t->flags & TRACE_BLOCKED ? -1 : trace_cell(&r->grid, t->across_m, t->range_m);
         if (cell >= 0) {
-            picture[cell] += arriving * s.back * area_m2;
+            const float own_m2 = is_plain ? area_m2 : (float)ends_echo_m2(r, b, t);
+            picture[cell] += arriving * s.back * own_m2;
         }
     }
 }

@@ -1,5 +1,7 @@
 #include "tracer/coherent.h"
 
+#include "tracer/ends.h"
+#include "tracer/origin.h"
 #include "tracer/vec.h"
 
 #include <string.h>
@@ -9,9 +11,12 @@ static const double resolved_turns = 0.5; /* over the width of a tube: as far as
 
 /* Axes of a record's normal: across, away, up. */
 struct tube {
-    struct vec sight;       /* of the radar */
+    struct vec sight;       /* of the receiver, to where the tube ends */
     struct vec along;       /* where its waves go */
     struct vec right, rise; /* to the rays beside it: one step of the plane, on one wave front */
+    double area_m2;         /* of the plane at the centre that the ray stands for */
+    double wider;           /* than there, where the tube ends, and the field as much weaker */
+    double gain;            /* of the field on the way back, over that from the centre */
     double complex field;
 };
 
@@ -19,7 +24,9 @@ struct adder {
     const struct trace_records *records;
     const struct reflect_law *law;
     uint64_t seed;
-    double sign, tube_m2;
+    double sign;
+    bool is_plain;
+    struct ends ends; /* in the axes of the records */
 };
 
 static struct vec normal_of(const struct trace_record *t)
@@ -32,18 +39,49 @@ static struct vec mirrored(struct vec v, struct vec normal)
     return vec_mad(v, normal, -2 * vec_dot(v, normal));
 }
 
-static struct tube primary_tube(const struct adder *a)
+/* Where the tube beside this one is, a step along `axis` on the plane: on one front with it. */
+static struct vec beside(const struct adder *a, const struct ends_primary *p, struct vec axis,
+                         double step_m)
 {
-    const struct trace_records *r = a->records;
-    const double psi = r->look.depression_deg * pi / 180;
-    const struct vec sight = {0, cos(psi), -sin(psi)};
+    const double far_m = a->ends.out.distance_m;
+    const struct vec on_front = vec_mad(axis, p->along, -vec_dot(axis, p->along));
+    return vec_scale(on_front, far_m > 0 ? step_m * far_m / (far_m + p->way_m) : step_m);
+}
+
+static struct tube primary_tube(const struct adder *a, uint32_t ray)
+{
+    const struct trace_sensor *s = &a->records->sensor;
+    const struct trace_axes *x = &a->ends.out.axes;
+    const double across_m = s->low_across_m + (ray % s->columns + 0.5) * s->step_across_m;
+    const double up_m = s->low_up_m + (ray / s->columns + 0.5) * s->step_up_m;
+    const struct ends_primary p = ends_primary(&a->ends, across_m, up_m);
     return (struct tube){
-        .sight = sight,
-        .along = sight,
-        .right = {r->sensor.step_across_m, 0, 0},
-        .rise = vec_scale((struct vec){0, sin(psi), cos(psi)}, r->sensor.step_up_m),
+        .sight = x->sight,
+        .along = p.along,
+        .right = beside(a, &p, x->across, s->step_across_m),
+        .rise = beside(a, &p, x->rise, s->step_up_m),
+        .area_m2 = ends_ray_m2(a->records, ray),
+        .wider = 1,
+        .gain = 1,
         .field = a->sign,
     };
+}
+
+/* What ends that are not plain change at the end of the way. */
+static void end_tube(const struct adder *a, struct tube *u, uint32_t b,
+                     const struct trace_record *t)
+{
+    const struct vec place = origin_of(a->records, b, t).places[b];
+    const struct end_view view = end_view(&a->ends.back, place);
+    const double far_m = a->ends.out.distance_m;
+    u->sight = view.along;
+    u->gain = sqrt(ends_gain(&a->ends, place));
+    if (far_m > 0) {
+        /* The way out is the whole way less the way back. */
+        u->wider = 1 + (2 * (double)t->range_m - view.way_m) / far_m;
+        u->right = vec_scale(u->right, u->wider);
+        u->rise = vec_scale(u->rise, u->wider);
+    }
 }
 
 static void reflect_tube(const struct adder *a, struct tube *u, const struct trace_record *t)
@@ -58,14 +96,17 @@ static void reflect_tube(const struct adder *a, struct tube *u, const struct tra
 /* The tube that meets record `t` of bounce `b`. */
 static struct tube tube_of(const struct adder *a, uint32_t b, const struct trace_record *t)
 {
-    const struct trace_record *way[TRACE_BOUNCES_MAX];
+    const struct trace_record *way[TRACE_BOUNCES_MAX], *last = t;
     for (uint32_t i = b; i > 0; i--) {
         t = &a->records->bounces[i - 1].records[t->parent];
         way[i - 1] = t;
     }
-    struct tube tube = primary_tube(a);
+    struct tube tube = primary_tube(a, t->ray);
     for (uint32_t i = 0; i < b; i++) {
         reflect_tube(a, &tube, way[i]);
+    }
+    if (!a->is_plain) {
+        end_tube(a, &tube, b, last);
     }
     return tube;
 }
@@ -118,9 +159,10 @@ static double complex field_of(const struct adder *a, uint32_t b, const struct t
     const struct reflect_field f = reflect_field_of(a->law, t);
     const bool is_ground = b == 0 && strcmp(a->records->materials[t->material], "ground") == 0;
     const double back = is_ground ? 0 : share_back(a, &tube, normal_of(t));
-    const double mirror = sqrt(4 * pi) / a->records->look.wavelength_m * a->tube_m2 * back;
-    const double rough = sqrt(4 * f.scattered * a->tube_m2);
-    return tube.field *
+    const double mirror =
+        sqrt(4 * pi) / a->records->look.wavelength_m * tube.area_m2 * tube.wider * back;
+    const double rough = sqrt(4 * f.scattered * tube.area_m2);
+    return tube.field * tube.gain *
            (mirror * f.specular * cexp(I * (double)t->phase_rad) + rough * drawn_phase(a, b, t));
 }
 
@@ -128,8 +170,12 @@ void coherent_echoes(const struct trace_records *r, const struct reflect_law *la
                      void (*take)(void *ctx, const struct coherent_echo *echo), void *ctx)
 {
     /* Fresnel's VV is that of the magnetic field. The electric one of the way back is turned. */
-    const struct adder a = {r, law, mix(seed), reflect_is_vv(law) ? -1 : 1,
-                            r->sensor.step_across_m * r->sensor.step_up_m};
+    const struct adder a = {.records = r,
+                            .law = law,
+                            .seed = mix(seed),
+                            .sign = reflect_is_vv(law) ? -1 : 1,
+                            .is_plain = ends_are_plain(&r->ends),
+                            .ends = ends_of(&r->look, &r->ends, ENDS_OF_PICTURE)};
     for (uint32_t b = 0; b < r->bounce_count; b++) {
         for (uint32_t i = 0; i < r->bounces[b].count; i++) {
             const struct trace_record *t = &r->bounces[b].records[i];

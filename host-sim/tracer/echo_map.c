@@ -1,6 +1,7 @@
 #include "tracer/echo_map.h"
 
 #include "hs/error.h"
+#include "tracer/ends.h"
 #include "tracer/mesh_audit.h"
 #include "tracer/sensor.h"
 
@@ -46,7 +47,6 @@ static void add_echo(const struct maker *m, uint32_t b, const struct trace_recor
 static int add_all(const struct maker *m)
 {
     const struct trace_records *r = m->records;
-    const double area_m2 = r->sensor.step_across_m * r->sensor.step_up_m;
     double *in = NULL;
     for (uint32_t b = 0; b < r->bounce_count; b++) {
         double *out = malloc((r->bounces[b].count + 1) * sizeof *out);
@@ -55,7 +55,7 @@ static int add_all(const struct maker *m)
             const struct reflect_shares s = reflect_record(m->law, t);
             const double arriving = in ? in[t->parent] : 1;
             out[i] = arriving * (double)s.specular;
-            add_echo(m, b, t, arriving * (double)s.back * area_m2);
+            add_echo(m, b, t, arriving * (double)s.back * ends_echo_m2(r, b, t));
         }
         free(in);
         in = out;

@@ -23,6 +23,21 @@ static void lay_ground(const struct trace_tiles *t, uint32_t row, float *depths_
     }
 }
 
+/* A primary ray of ends that are not plain starts outside the model and above the ground, but not
+ * behind the transmitter. Far from the model single precision would lose its place. */
+static bool add_apart(const struct trace_tiles *t, struct packet *p, uint32_t column, uint32_t row,
+                      uint32_t asker)
+{
+    const struct ends_primary ray = primary_apart(t, column, row);
+    const double far_m = t->ends.out.distance_m;
+    const double most_m = far_m > 0 ? far_m + ray.way_m : INFINITY;
+    double back_m = t->clear_m + fmax(vec_dot(ray.from, ray.along), 0);
+    if (ray.from.z < 0 && ray.along.z < 0) {
+        back_m += ray.from.z / ray.along.z;
+    }
+    return packet_add(p, vec_mad(ray.from, ray.along, -fmin(back_m, most_m)), ray.along, asker);
+}
+
 /* What each primary ray of the tile meets, asked of Embree. */
 static void cast_primaries(const struct trace_tiles *t, uint32_t index, struct tile_work *w)
 {
@@ -33,7 +48,10 @@ static void cast_primaries(const struct trace_tiles *t, uint32_t index, struct t
         for (uint32_t row = rows.first; row < rows.end; row++) {
             const uint32_t at = (row - rows.first) * columns + column;
             w->mirrored[at] = TILE_NOT_ASKED;
-            if (packet_add(&p, primary_start(t, column, row), t->axes.sight, at)) {
+            const bool is_full =
+                t->is_plain ? packet_add(&p, primary_start(t, column, row), t->axes.sight, at)
+                            : add_apart(t, &p, column, row, at);
+            if (is_full) {
                 packet_meet(t->scene, &p, w->facets);
             }
         }
@@ -134,6 +152,30 @@ static void reflect_row(const struct trace_tiles *t, uint32_t row, const uint32_
     }
 }
 
+/* Likewise, for ends that are not plain: nothing is alike along a row. Each record has its flight,
+ * of the same number. */
+static void reflect_row_apart(const struct trace_tiles *t, uint32_t row, const uint32_t *facets,
+                              struct tile_work *w, struct trace_bounce *bounce)
+{
+    for (uint32_t column = 0; column < t->sensor.columns; column++) {
+        const struct ends_primary ray = primary_apart(t, column, row);
+        struct ray_angles g = {0};
+        if (facets[column] == SCENE_MISS || !ray_angles_at(t, facets[column], ray.along, 0, &g)) {
+            continue;
+        }
+        const struct flight f = {
+            .from = ray.from,
+            .along = ray.along,
+            .across_m = ray.across_m,
+            .way_m = ray.way_m,
+            .ray = row * t->sensor.columns + column,
+            .column = column,
+        };
+        w->next[w->flight_count] = TILE_NOT_ASKED;
+        tile_reflect(t, &f, &g, bounce, &w->flights[w->flight_count++]);
+    }
+}
+
 void first_bounce(const struct trace_tiles *t, uint32_t index, struct tile_work *w,
                   struct tile_result *result)
 {
@@ -146,6 +188,10 @@ void first_bounce(const struct trace_tiles *t, uint32_t index, struct tile_work 
     }
     for (uint32_t row = rows.first; row < rows.end; row++) {
         const size_t at = (size_t)(row - rows.first) * t->sensor.columns;
-        reflect_row(t, row, w->facets + at, w->mirrored + at, w, result);
+        if (t->is_plain) {
+            reflect_row(t, row, w->facets + at, w->mirrored + at, w, result);
+        } else {
+            reflect_row_apart(t, row, w->facets + at, w, &result->bounces[0]);
+        }
     }
 }

@@ -1,5 +1,7 @@
 #include "tracer/origin.h"
 
+#include "tracer/ends.h"
+
 static const double pi = 3.14159265358979323846;
 
 static struct vec normal_of(const struct trace_record *t)
@@ -22,6 +24,10 @@ struct origin origin_of(const struct trace_records *r, uint32_t b, const struct 
     }
     struct vec along = sight, at = vec_scale(rise, left_up_m);
     at.x = r->sensor.low_across_m + (column + 0.5) * r->sensor.step_across_m;
+    if (r->ends.distance_m > 0) {
+        const struct ends ends = ends_of(&r->look, &r->ends, ENDS_OF_PICTURE);
+        along = end_view(&ends.out, at).along;
+    }
     for (uint32_t i = 0; i <= b; i++) {
         const struct vec normal = normal_of(way[i]);
         at = o.places[i] = vec_mad(at, along, (double)way[i]->hop_m);

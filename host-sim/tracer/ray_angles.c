@@ -40,3 +40,11 @@ bool ray_angles_at(const struct trace_tiles *t, uint32_t facet, struct vec along
     r->reserved = 0;
     return fabs(pace) >= TILE_GRAZING_COS;
 }
+
+void ray_angles_apart(struct ray_angles *g, struct vec along, struct vec seen)
+{
+    const double echo_cos = -vec_dot(g->normal, seen);
+    g->record.echo_rad = angle_of(echo_cos);
+    g->record.turn_rad = angle_of(vec_dot(along, seen));
+    g->record.flags = (uint8_t)(echo_cos > 0 ? 0 : TRACE_BLOCKED);
+}

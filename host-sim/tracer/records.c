@@ -144,6 +144,22 @@ static bool is_name(const char *name)
     return length > 0 && length < TRACE_NAME_SIZE && name[length] == '\0';
 }
 
+static bool is_distance(double x)
+{
+    return x == 0 || is_within(x, 0.01, 1e7);
+}
+
+static bool are_ends_sound(const struct trace_ends *e)
+{
+    if (!e->is_apart) {
+        return is_distance(e->distance_m) && e->receiver_azimuth_deg == 0 &&
+               e->receiver_depression_deg == 0 && e->receiver_distance_m == 0;
+    }
+    return is_distance(e->distance_m) && is_distance(e->receiver_distance_m) &&
+           is_within(e->receiver_azimuth_deg, 0, nextafter(360, 0)) &&
+           is_within(e->receiver_depression_deg, 1e-3, 90 - 1e-3);
+}
+
 static const char *head_fault(const struct trace_records *r)
 {
     const struct trace_look *look = &r->look;
@@ -153,6 +169,9 @@ static const char *head_fault(const struct trace_records *r)
         !is_within(look->depression_deg, 1e-3, 90 - 1e-3) ||
         !is_within(look->wavelength_m, 1e-3, 10)) {
         return "the look is out of range";
+    }
+    if (!are_ends_sound(&r->ends)) {
+        return "where transmitter and receiver stand is out of range";
     }
     if (grid->cells_across - 1 >= TRACE_CELLS_MAX || grid->cells_range - 1 >= TRACE_CELLS_MAX ||
         !is_within(grid->cell_m, 1e-3, 1000)) {

@@ -3,6 +3,7 @@
 #include "hs/atomic_file.h"
 #include "hs/error.h"
 #include "hs/input_file.h"
+#include "tracer/ends.h"
 #include "tracer/records.h"
 
 #include <errno.h>
@@ -11,7 +12,9 @@
 #include <string.h>
 #include <sys/stat.h>
 
-enum { VERSION = 1 };
+/* Version 2 has ends that are not plain. Whoever knows version 1 alone must not take them for
+ * plain. */
+enum { PLAIN_VERSION = 1, ENDS_VERSION = 2 };
 
 struct file_head {
     char magic[8];
@@ -25,7 +28,9 @@ struct file_head {
     uint32_t record_count[TRACE_BOUNCES_MAX];
     uint32_t record_crc[TRACE_BOUNCES_MAX];
     char materials[TRACE_MATERIALS_MAX][TRACE_NAME_SIZE];
-    uint8_t reserved[108];
+    double distance_m, receiver_azimuth_deg, receiver_depression_deg, receiver_distance_m;
+    uint32_t is_apart;
+    uint8_t reserved[72];
     uint32_t crc;
 };
 _Static_assert(sizeof(struct file_head) == 1280, "the head must be what FORMATS.md says");
@@ -45,7 +50,7 @@ static uint32_t bounce_crc(const struct trace_bounce *b)
 static struct file_head head_of(const struct trace_records *r)
 {
     struct file_head h = {
-        .version = VERSION,
+        .version = ends_are_plain(&r->ends) ? PLAIN_VERSION : ENDS_VERSION,
         .head_bytes = sizeof h,
         .azimuth_deg = r->look.azimuth_deg,
         .depression_deg = r->look.depression_deg,
@@ -61,6 +66,11 @@ static struct file_head head_of(const struct trace_records *r)
         .low_up_m = r->sensor.low_up_m,
         .material_count = r->material_count,
         .bounce_count = r->bounce_count,
+        .distance_m = r->ends.distance_m,
+        .receiver_azimuth_deg = r->ends.receiver_azimuth_deg,
+        .receiver_depression_deg = r->ends.receiver_depression_deg,
+        .receiver_distance_m = r->ends.receiver_distance_m,
+        .is_apart = r->ends.is_apart,
     };
     memcpy(h.magic, magic, sizeof magic);
     for (uint32_t b = 0; b < r->bounce_count; b++) {
@@ -88,16 +98,26 @@ int trace_records_write(const struct trace_records *r, const char *path)
     return hs_atomic_commit(&file); /* reports a failed fwrite too */
 }
 
+static struct trace_ends ends_in(const struct file_head *h)
+{
+    return (struct trace_ends){h->distance_m, h->is_apart != 0, h->receiver_azimuth_deg,
+                               h->receiver_depression_deg, h->receiver_distance_m};
+}
+
 static const char *head_fault(const struct file_head *h, uint64_t file_bytes)
 {
     if (memcmp(h->magic, magic, sizeof magic) != 0) {
         return "is no file of traced records";
     }
-    if (h->version != VERSION || h->head_bytes != sizeof *h) {
+    if ((h->version != PLAIN_VERSION && h->version != ENDS_VERSION) || h->head_bytes != sizeof *h) {
         return "is of another version of landmass-target";
     }
     if (h->crc != head_crc(h)) {
         return "the checksum of its head is wrong";
+    }
+    const struct trace_ends ends = ends_in(h);
+    if (h->is_apart > 1 || (h->version == PLAIN_VERSION) != ends_are_plain(&ends)) {
+        return "where its transmitter and receiver stand does not go with its version";
     }
     uint64_t bytes = sizeof *h;
     for (uint32_t b = 0; b < TRACE_BOUNCES_MAX; b++) {
@@ -118,6 +138,7 @@ static void take_head(struct trace_records *r, const struct file_head *h)
                    h->low_up_m},
         .material_count = h->material_count,
         .bounce_count = h->bounce_count,
+        .ends = ends_in(h),
     };
     memcpy(r->materials, h->materials, sizeof r->materials);
 }

@@ -1,5 +1,7 @@
 #include "tracer/sensor.h"
 
+#include "tracer/ends.h"
+
 #include <math.h>
 
 static const double pi = 3.14159265358979323846;
@@ -16,6 +18,9 @@ static double top_of(const struct scene *s, double psi, double far_m)
 
 struct trace_sensor trace_sensor_for(const struct scene *s, const struct trace_order *o)
 {
+    if (!ends_are_plain(&o->ends)) {
+        return ends_sensor_for(s, o);
+    }
     const double psi = o->look.depression_deg * pi / 180;
     const double width_m = o->grid.cells_across * o->grid.cell_m;
     const double far_m = o->grid.cells_range * o->grid.cell_m / 2;

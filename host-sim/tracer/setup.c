@@ -2,6 +2,7 @@
 
 #include "hs/error.h"
 #include "tracer/accumulate.h"
+#include "tracer/ends.h"
 #include "tracer/materials.h"
 #include "tracer/mesh_audit.h"
 #include "tracer/model_file.h"
@@ -18,6 +19,9 @@ struct setup setup_default(void)
         .scale = 1,
         .depression_deg = 15,
         .wavelength_m = TRACE_WAVELENGTH_M,
+        .receiver_azimuth_deg = NAN,
+        .receiver_depression_deg = NAN,
+        .receiver_distance_m = NAN,
         .cell_m = TRACE_CHIP_CELL_M,
         .cells = TRACE_CHIP_CELLS,
         .rays_per_cell = 2,
@@ -83,6 +87,22 @@ void setup_trace_options(struct setup *s, struct hs_option *o)
     };
     memcpy(o, options, sizeof options);
     setup_ray_options(s, o + SETUP_TRACE_OPTIONS - SETUP_RAY_OPTIONS);
+}
+
+void setup_ends_options(struct setup *s, struct hs_option *o)
+{
+    const struct hs_option options[SETUP_ENDS_OPTIONS] = {
+        {"distance", HS_REAL, &s->distance_m, 0, 1e7, "M",
+         "of the radar, or of the transmitter, from the scene's centre; 0: so far away that its\n"
+         "waves are plane",
+         false},
+        {"receiver-azimuth", HS_REAL, &s->receiver_azimuth_deg, -360, 360, "DEG",
+         "of a receiver apart from the transmitter, which then has --azimuth", false},
+        {"receiver-depression", HS_REAL, &s->receiver_depression_deg, 1, 89, "DEG",
+         "likewise; default: the transmitter's", false},
+        {"receiver-distance", HS_REAL, &s->receiver_distance_m, 0, 1e7, "M", "likewise", false},
+    };
+    memcpy(o, options, sizeof options);
 }
 
 void setup_law_options(struct setup *s, struct hs_option *o)
@@ -158,15 +178,42 @@ int setup_load(const struct setup *s, struct mesh *m)
     return 0;
 }
 
-struct trace_order setup_order(const struct setup *s, double azimuth_deg)
+static double whole_turn_deg(double azimuth_deg)
 {
     const double turn_deg = fmod(azimuth_deg, 360);
+    return turn_deg < 0 ? turn_deg + 360 : turn_deg;
+}
+
+static double given_or(double given, double otherwise)
+{
+    return isnan(given) ? otherwise : given;
+}
+
+/* What is not said of a receiver is as of the transmitter. */
+static struct trace_ends ends_of_setup(const struct setup *s, double azimuth_deg)
+{
+    if (isnan(s->receiver_azimuth_deg) && isnan(s->receiver_depression_deg) &&
+        isnan(s->receiver_distance_m)) {
+        return (struct trace_ends){.distance_m = s->distance_m};
+    }
+    return (struct trace_ends){
+        .distance_m = s->distance_m,
+        .is_apart = true,
+        .receiver_azimuth_deg = whole_turn_deg(given_or(s->receiver_azimuth_deg, azimuth_deg)),
+        .receiver_depression_deg = given_or(s->receiver_depression_deg, s->depression_deg),
+        .receiver_distance_m = given_or(s->receiver_distance_m, s->distance_m),
+    };
+}
+
+struct trace_order setup_order(const struct setup *s, double azimuth_deg)
+{
     return (struct trace_order){
-        .look = {turn_deg < 0 ? turn_deg + 360 : turn_deg, s->depression_deg, s->wavelength_m},
+        .look = {whole_turn_deg(azimuth_deg), s->depression_deg, s->wavelength_m},
         .grid = {(uint32_t)s->cells, (uint32_t)s->cells, s->cell_m},
         .rays_per_cell = (uint32_t)s->rays_per_cell,
         .bounces = (uint32_t)s->bounces,
         .threads = (uint32_t)s->threads,
+        .ends = ends_of_setup(s, azimuth_deg),
     };
 }
 
@@ -201,9 +248,8 @@ static void doubt_place(const struct setup *s, const struct mesh *m)
 int setup_scene_of(const struct setup *s, const struct mesh *m, struct scene *scene)
 {
     doubt_place(s, m);
-    const struct trace_order order = setup_order(s, 0);
-    const double ground_half_m =
-        s->has_no_ground ? 0 : trace_ground_half_m(&order.grid, s->depression_deg);
+    const struct trace_order order = setup_order(s, s->azimuth_deg);
+    const double ground_half_m = s->has_no_ground ? 0 : ends_ground_half_m(&order);
     return scene_open(scene, m, ground_half_m, s->model);
 }
 

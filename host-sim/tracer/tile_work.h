@@ -82,6 +82,9 @@ struct ray_angles {
 bool ray_angles_at(const struct trace_tiles *t, uint32_t facet, struct vec along, uint32_t bounce,
                    struct ray_angles *g);
 
+/* The same, where the receiver sees the reflection along `seen`. */
+void ray_angles_apart(struct ray_angles *g, struct vec along, struct vec seen);
+
 /* Let the specular ray go on from `at`. */
 static inline void flight_turn(struct flight *f, struct vec at, const struct ray_angles *g)
 {
@@ -124,6 +127,18 @@ static inline struct vec primary_start(const struct trace_tiles *t, uint32_t col
         vec_mad(vec_scale(t->axes.rise, up_of(t, row)), t->axes.across, across_of(t, column));
     const double below_m = ground_depth_m(t, row) < 0 ? -ground_depth_m(t, row) : 0;
     return vec_mad(on_plane, t->axes.sight, -t->clear_m - below_m);
+}
+
+/* Record the reflection of flight `f`, and make its specular ray, which may be at the same place.
+ */
+void tile_reflect(const struct trace_tiles *t, const struct flight *f, const struct ray_angles *g,
+                  struct trace_bounce *bounce, struct flight *on);
+
+/* Primary ray of ends that are not plain. */
+static inline struct ends_primary primary_apart(const struct trace_tiles *t, uint32_t column,
+                                                uint32_t row)
+{
+    return ends_primary(&t->ends, across_of(t, column), up_of(t, row));
 }
 
 /* Find what the tile's primary rays meet, make the records of their reflections, and flights of the

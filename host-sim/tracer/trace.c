@@ -1,6 +1,7 @@
 #include "tracer/trace.h"
 
 #include "hs/error.h"
+#include "tracer/ends.h"
 #include "tracer/trace_tile.h"
 
 #include <pthread.h>
@@ -104,17 +105,22 @@ static int run_tiles(const struct trace_tiles *tiles, uint32_t threads, struct t
 int trace_run(const struct scene *s, const struct trace_order *o, const char *place,
               struct trace_records *r, uint64_t *rays_cast)
 {
+    *r = (struct trace_records){0};
+    if (rays_cast) {
+        *rays_cast = 0;
+    }
+    if (ends_check(s, o) != 0) {
+        return -1;
+    }
     *r = (struct trace_records){
         .look = o->look,
         .grid = o->grid,
         .sensor = trace_sensor_for(s, o),
         .material_count = s->material_count,
         .bounce_count = o->bounces,
+        .ends = o->ends,
     };
     memcpy(r->materials, s->materials, sizeof r->materials);
-    if (rays_cast) {
-        *rays_cast = 0;
-    }
     const struct trace_sensor *sensor = &r->sensor;
     struct trace_tiles tiles = {0};
     const bool is_done = sensor->rows <= TRACE_RAYS_MAX / sensor->columns &&

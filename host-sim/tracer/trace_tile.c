@@ -43,22 +43,39 @@ static void meet_flights(const struct trace_tiles *t, struct tile_work *w)
     packet_meet(t->scene, &p, w->next);
 }
 
-/* Record the reflection of flight `f`, and make its specular ray, which may be at the same place.
- */
-static void reflect(const struct trace_tiles *t, const struct flight *f, const struct ray_angles *g,
-                    struct trace_bounce *bounce, struct flight *on)
+/* Where the receiver sees the echo from `at`, and at what angles. `way_m` is that from the
+ * transmitter. */
+static void see_apart(const struct trace_tiles *t, const struct flight *f, struct vec at,
+                      double way_m, struct ray_angles *g)
+{
+    const struct end_view view = end_view(&t->ends.back, at);
+    const double range_m = (way_m + view.way_m) / 2;
+    ray_angles_apart(g, f->along, view.along);
+    g->record.across_m = (float)((f->across_m + view.across_m) / 2);
+    g->record.range_m = (float)range_m;
+    g->record.phase_rad = angle_of_turns(range_m * t->turns_per_m);
+}
+
+void tile_reflect(const struct trace_tiles *t, const struct flight *f, const struct ray_angles *g,
+                  struct trace_bounce *bounce, struct flight *on)
 {
     const double hop_m = (g->plane->offset_m - vec_dot(g->plane->normal, f->from)) / g->pace;
     const double across_m = f->across_m, way_m = f->way_m + hop_m;
     const struct vec at = vec_mad(f->from, f->along, hop_m);
-    const double range_m = (way_m + vec_dot(at, t->axes.sight)) / 2;
     struct trace_record *record = &bounce->records[bounce->count];
-    *record = g->record;
+    if (t->is_plain) {
+        const double range_m = (way_m + vec_dot(at, t->axes.sight)) / 2;
+        *record = g->record;
+        record->across_m = (float)((across_m + vec_dot(at, t->axes.across)) / 2);
+        record->range_m = (float)range_m;
+        record->phase_rad = angle_of_turns(range_m * t->turns_per_m);
+    } else {
+        struct ray_angles seen = *g;
+        see_apart(t, f, at, way_m, &seen);
+        *record = seen.record;
+    }
     record->ray = f->ray;
     record->parent = f->parent;
-    record->across_m = (float)((across_m + vec_dot(at, t->axes.across)) / 2);
-    record->range_m = (float)range_m;
-    record->phase_rad = angle_of_turns(range_m * t->turns_per_m);
     record->hop_m = (float)hop_m;
     on->across_m = across_m;
     on->way_m = way_m;
@@ -84,7 +101,7 @@ static void reflect_flights(const struct trace_tiles *t, struct tile_work *w, ui
         }
         bounce[-1].records[f->parent].flags |= TRACE_GOES_ON;
         w->next[w->flight_count] = TILE_NOT_ASKED;
-        reflect(t, f, &g, bounce, &w->flights[w->flight_count++]);
+        tile_reflect(t, f, &g, bounce, &w->flights[w->flight_count++]);
     }
 }
 
@@ -92,12 +109,15 @@ static void reflect_flights(const struct trace_tiles *t, struct tile_work *w, ui
 static void look_back(const struct trace_tiles *t, const struct tile_work *w,
                       struct trace_bounce *bounce, struct tile_result *result)
 {
-    const struct vec back = vec_scale(t->axes.sight, -1);
+    struct vec back = vec_scale(t->axes.sight, -1);
     struct packet p = {.rays.count = 0};
     for (uint32_t k = 0; k < w->flight_count; k++) {
         const uint32_t i = w->order[k];
         if (bounce->records[i].flags & TRACE_BLOCKED) {
             continue;
+        }
+        if (!t->is_plain) {
+            back = vec_scale(end_view(&t->ends.back, w->flights[i].from).along, -1);
         }
         result->rays_cast++;
         if (result->baseline) {
@@ -136,6 +156,9 @@ void trace_tile(const struct trace_tiles *t, uint32_t index, struct tile_work *w
     const struct rows rows = rows_of(t, index);
     first_bounce(t, index, work, result);
     put_in_order(t, work);
+    if (t->is_apart) {
+        look_back(t, work, &result->bounces[0], result);
+    }
     if (result->baseline) {
         keep_primaries(t, index, result->baseline);
     }
@@ -175,13 +198,16 @@ int trace_tiles_open(struct trace_tiles *t, const struct scene *scene,
         .sensor = trace_sensor_for(scene, order),
         .clear_m = fmax(vec_length(scene->low), vec_length(scene->high)) + 1,
         .turns_per_m = -2 / order->look.wavelength_m,
+        .ends = ends_of(&order->look, &order->ends, order->look.azimuth_deg),
+        .is_plain = ends_are_plain(&order->ends),
+        .is_apart = order->ends.is_apart,
         .bounces = order->bounces,
     };
     const uint32_t columns = t->sensor.columns, rows = t->sensor.rows;
     t->tile_rows = columns < TILE_RAYS ? TILE_RAYS / columns : 1;
     t->tile_rays = t->tile_rows * columns;
     t->tile_count = (rows + t->tile_rows - 1) / t->tile_rows;
-    t->is_drawn = scene->triangle_count < columns * rows;
+    t->is_drawn = t->is_plain && scene->triangle_count < columns * rows;
     if (t->is_drawn && open_projections(t) != 0) {
         trace_tiles_close(t);
         return -1;

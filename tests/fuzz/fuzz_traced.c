@@ -2,6 +2,7 @@
  * checksums are put right first, or nothing but the first byte would ever be looked at. */
 #include "fuzz.h"
 #include "fx/crc32c.h"
+#include "tracer/ends.h"
 #include "tracer/records.h"
 
 const uint32_t fuzz_mutations = 15000;
@@ -43,6 +44,7 @@ static void use(const struct trace_records *r)
             const struct trace_record *t = &r->bounces[b].records[i];
             FUZZ_ASSERT(trace_cell(&r->grid, t->across_m, t->range_m) <
                         (int32_t)(r->grid.cells_across * r->grid.cells_range));
+            FUZZ_ASSERT(!(ends_echo_m2(r, b, t) < 0));
             FUZZ_ASSERT(b == 0 || r->bounces[b - 1].records[t->parent].ray == t->ray);
         }
     }

@@ -6,6 +6,7 @@
 #include "hs/error.h"
 #include "hs/png.h"
 #include "hs/report.h"
+#include "tracer/ends.h"
 #include "tracer/setup.h"
 #include "tracer/squint.h"
 
@@ -22,6 +23,9 @@ static const struct hs_usage usage = {
     "With --coherent fields are added with their phase, each with the side lobes of the\n"
     "radar: a pixel is the root of a cross section in m^2. Speckle is then the sum over\n"
     "rough places, one for each ray. --complex writes it, in the order of the PNG."};
+
+/* With these a picture has no place on earth, and no squint of one flight. */
+#define ENDS "distance|receiver-azimuth|receiver-depression|receiver-distance"
 
 struct outputs {
     const char *png, *csv, *complex_file;
@@ -154,6 +158,16 @@ static int trace_model(const struct setup *s, struct trace_records *r)
     return result;
 }
 
+static int check_ends(const struct trace_records *r, const struct outputs *o, const char *records)
+{
+    const bool needs_plain = o->squint_deg != 0 || !isnan(o->site.latitude_deg);
+    return !needs_plain || ends_are_plain(&r->ends)
+               ? 0
+               : hs_error(records, "trace the target again without them",
+                          "was traced with --distance or a receiver apart: --squint and --latitude "
+                          "are of one radar far away");
+}
+
 static int run(const struct setup *s, const char *records, const struct outputs *o)
 {
     struct trace_records r;
@@ -161,10 +175,11 @@ static int run(const struct setup *s, const char *records, const struct outputs 
     if (loaded != 0) {
         return HS_EXIT_FAILED;
     }
-    if (o->squint_deg != 0) {
+    int result = check_ends(&r, o, records);
+    if (result == 0 && o->squint_deg != 0) {
         squint_records(&r, o->squint_deg);
     }
-    const int result = keep_layer(&r, o->layer) == 0 ? render(s, &r, o) : -1;
+    result = result == 0 && keep_layer(&r, o->layer) == 0 ? render(s, &r, o) : -1;
     trace_records_free(&r);
     return result == 0 ? HS_EXIT_OK : HS_EXIT_FAILED;
 }
@@ -186,7 +201,7 @@ int target_cmd_render(int argc, char **argv)
         .zoom = 6, .weighting = FOCUS_TAYLOR, .cut_db = 20, .levels = 256, .site = {NAN, NAN, 0}};
     const char *records = NULL;
     long zoom = 6;
-    enum { OWN = 42, COUNT = OWN + SETUP_OPTIONS };
+    enum { OWN = 47, COUNT = OWN + SETUP_OPTIONS + SETUP_ENDS_OPTIONS };
     struct hs_option options[COUNT] = {
         {"records", HS_INPUT, &records, 0, 0, "FILE.trace", "in place of a model", false},
         {"out", HS_OUTPUT, &o.png, 0, 0, "FILE.png", "the picture", false},
@@ -218,7 +233,8 @@ int target_cmd_render(int argc, char **argv)
         HS_NEEDS_ROW("latitude", "longitude"),
         HS_NEEDS_ROW("longitude", "latitude"),
         HS_NEEDS_ROW("heading", "latitude"),
-        HS_CLASHES_ROW("squint", "latitude"),
+        HS_CLASHES_ROW("squint", ENDS "|latitude"),
+        HS_CLASHES_ROW("latitude", ENDS),
         HS_CLASHES_ROW("raw", "coherent|looks|resolution|pixel"),
         HS_NEEDS_ROW("tone", "out"),
         HS_NEEDS_ROW("cut-db", "tone=cut"),
@@ -236,6 +252,10 @@ int target_cmd_render(int argc, char **argv)
         HS_NEEDS_ROW("turn", "model"),
         HS_NEEDS_ROW("as-is", "model"),
         HS_NEEDS_ROW("depression", "model"),
+        HS_NEEDS_ROW("distance", "model"),
+        HS_NEEDS_ROW("receiver-azimuth", "model"),
+        HS_NEEDS_ROW("receiver-depression", "model"),
+        HS_NEEDS_ROW("receiver-distance", "model"),
         HS_NEEDS_ROW("cell", "model"),
         HS_NEEDS_ROW("cells", "model"),
         HS_NEEDS_ROW("no-ground", "model"),
@@ -244,6 +264,7 @@ int target_cmd_render(int argc, char **argv)
     };
     int exit_code;
     setup_options(&s, options + OWN);
+    setup_ends_options(&s, options + OWN + SETUP_OPTIONS);
     options[OWN].is_required = false; /* the model: there may be records instead */
     if (!hs_options_read(&usage, options, COUNT, argc, argv, &exit_code)) {
         return exit_code;

@@ -10,7 +10,8 @@
 
 static const struct hs_usage usage = {
     "trace", "trace a model and keep every reflection",
-    "Rays leave a plane square to the line of sight; each reflection is kept with its angles,\n"
+    "Rays leave a plane square to the line of sight, or with --distance a point; each reflection "
+    "is kept with its angles,\n"
     "material and the place where its echo is focused (docs/FORMATS.md, Traced records), for\n"
     "`landmass-target render` with any law of reflection, or to train a network on."};
 
@@ -105,7 +106,7 @@ int target_cmd_trace(int argc, char **argv)
 {
     struct setup s = setup_default();
     struct outputs outputs = {.bounce = 2};
-    enum { OWN = 6, COUNT = OWN + SETUP_MODEL_OPTIONS + SETUP_TRACE_OPTIONS };
+    enum { OWN = 6, COUNT = OWN + SETUP_MODEL_OPTIONS + SETUP_TRACE_OPTIONS + SETUP_ENDS_OPTIONS };
     struct hs_option options[COUNT] = {
         {"out", HS_OUTPUT, &outputs.records, 0, 0, "FILE.trace", "the records", true},
         {"picture", HS_OUTPUT, &outputs.picture, 0, 0, "FILE.png",
@@ -123,6 +124,7 @@ int target_cmd_trace(int argc, char **argv)
     int exit_code;
     setup_model_options(&s, options + OWN);
     setup_trace_options(&s, options + OWN + SETUP_MODEL_OPTIONS);
+    setup_ends_options(&s, options + OWN + SETUP_MODEL_OPTIONS + SETUP_TRACE_OPTIONS);
     if (!hs_options_read(&usage, options, COUNT, argc, argv, &exit_code)) {
         return exit_code;
     }

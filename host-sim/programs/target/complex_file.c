@@ -2,6 +2,7 @@
 
 #include "gis/complex_raster.h"
 #include "hs/error.h"
+#include "tracer/ends.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -20,9 +21,11 @@ static void note_text(struct db_complex_note *n, const char *name, const char *v
     snprintf(n->value, sizeof n->value, "%s", value);
 }
 
-static void make_notes(const struct setup *s, const struct trace_records *r,
-                       enum focus_weighting weighting,
-                       struct db_complex_note notes[DB_COMPLEX_NOTES_MAX])
+/* Returns how many there are. ENDS are the distance, then azimuth, depression and distance of a
+ * receiver apart. */
+static int make_notes(const struct setup *s, const struct trace_records *r,
+                      enum focus_weighting weighting,
+                      struct db_complex_note notes[DB_COMPLEX_NOTES_MAX])
 {
     note_real(&notes[0], "WAVELENGTH_M", r->look.wavelength_m);
     note_real(&notes[1], "RADAR_AZIMUTH_DEG", r->look.azimuth_deg);
@@ -33,6 +36,19 @@ static void make_notes(const struct setup *s, const struct trace_records *r,
     note_text(&notes[6], "LAW", s->law);
     note_text(&notes[7], "ORDER", "slant range, far on top; left of the radar first");
     note_text(&notes[8], "CALIBRATION", "|pixel|^2 of a point: m^2; phase -4 pi range/wavelength");
+    const struct trace_ends *e = &r->ends;
+    if (ends_are_plain(e)) {
+        return DB_COMPLEX_NOTES_MAX - 1;
+    }
+    char text[sizeof notes[9].value];
+    if (e->is_apart) {
+        snprintf(text, sizeof text, "%.5g; %.5g %.5g %.5g", e->distance_m, e->receiver_azimuth_deg,
+                 e->receiver_depression_deg, e->receiver_distance_m);
+    } else {
+        snprintf(text, sizeof text, "%.5g", e->distance_m);
+    }
+    note_text(&notes[9], "ENDS", text);
+    return DB_COMPLEX_NOTES_MAX;
 }
 
 /* Level ground at the target's height: slant range over cos(depression), and the picture turned as
@@ -71,12 +87,12 @@ int complex_file_write(const struct setup *s, const struct trace_records *r,
     for (size_t row = 0; row < height; row++) {
         memcpy(turned + row * width, chip + (height - 1 - row) * width, width * sizeof *turned);
     }
-    make_notes(s, r, weighting, notes);
+    const int count = make_notes(s, r, weighting, notes);
     const double pixel_m = (double)s->ratio * r->grid.cell_m;
     const struct db_complex_place place =
         site ? place_of(site, r, pixel_m) : (struct db_complex_place){0};
-    const int result = db_complex_write(path, turned, (int)width, (int)height, notes,
-                                        DB_COMPLEX_NOTES_MAX, site ? &place : NULL);
+    const int result =
+        db_complex_write(path, turned, (int)width, (int)height, notes, count, site ? &place : NULL);
     free(turned);
     return result;
 }

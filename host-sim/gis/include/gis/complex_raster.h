@@ -2,13 +2,14 @@
  * The end of the name says the form:
  * - .tif, .tiff: GeoTIFF, one band of CFloat32, the notes as metadata,
  * - .ntf, .nitf: NITF 2.1, image category SAR, bands I and Q of 32-bit floats, the notes as image
- *   comments. GDAL writes no SICD: that also wants an orbit and times, which no model has. */
+ *   comments, of which there may be nine; the tenth is in the title. GDAL writes no SICD: that also
+ * wants an orbit and times, which no model has. */
 #ifndef GIS_COMPLEX_RASTER_H
 #define GIS_COMPLEX_RASTER_H
 
 #include <complex.h>
 
-enum { DB_COMPLEX_NOTES_MAX = 9 };
+enum { DB_COMPLEX_NOTES_MAX = 10 };
 
 /* "name=value", at most 80 characters in ASCII. */
 struct db_complex_note {

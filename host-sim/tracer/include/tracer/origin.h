@@ -11,7 +11,8 @@ struct origin {
     uint32_t count;                       /* of them */
     /* What tomography finds: the echo lies at `range` along the line of sight and this far up the
      * sensor's plane, the mean of where its ray left the plane and came back to it. After one
-     * reflection that is the place itself; after two in a right angle the seam. */
+     * reflection that is the place itself; after two in a right angle the seam. Of one radar far
+     * away: with other ends the two numbers mean nothing. */
     double elevation_m;
     double height_m; /* the same place's height above the ground */
 };

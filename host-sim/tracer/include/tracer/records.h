@@ -24,10 +24,11 @@
  * INTENSITY that a law gives, with coefficients in [0, 1] for both directions ([Niu], Fig. 11):
  *     in[0] = 1,  in[b] = in[b - 1] * SPC(parent),  echo = in[b] * BKC(record), 0 when blocked.
  * The picture is the sum of the echoes in their cells (trace_cell), times the area of sensor plane
- * that a ray stands for, step_across_m * step_up_m. */
+ * that a ray stands for, step_across_m * step_up_m (ends that are not plain: ends_echo_m2()). */
 #ifndef TRACER_RECORDS_H
 #define TRACER_RECORDS_H
 
+#include <stdbool.h>
 #include <stddef.h>
 #include <stdint.h>
 
@@ -75,6 +76,14 @@ struct trace_look {
     double wavelength_m;   /* 0.001..10 */
 };
 
+/* Where the ends of an echo's way stand. All 0: one radar, so far away that its waves are plane.
+ * Else ends.h says what the records mean; SHAPE and AXES above are those of the transmitter. */
+struct trace_ends {
+    double distance_m; /* of the transmitter from the scene's centre, 0.01..1e7; 0: plane waves */
+    bool is_apart;     /* there is a receiver of its own; its numbers are 0 otherwise */
+    double receiver_azimuth_deg, receiver_depression_deg, receiver_distance_m; /* likewise */
+};
+
 /* The picture: cell (column, row) spans across_m from -cells_across/2 * cell_m + column * cell_m,
  * range_m likewise. Row 0 is nearest to the radar, column 0 leftmost as the radar sees it. */
 struct trace_grid {
@@ -98,6 +107,7 @@ struct trace_records {
     char materials[TRACE_MATERIALS_MAX][TRACE_NAME_SIZE];
     uint32_t bounce_count; /* 1..TRACE_BOUNCES_MAX; lists may be empty */
     struct trace_bounce bounces[TRACE_BOUNCES_MAX];
+    struct trace_ends ends;
 };
 
 /* Index row * cells_across + column of the cell in which an echo lies, or -1 outside the

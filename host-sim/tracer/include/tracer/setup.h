@@ -16,6 +16,8 @@ struct setup {
     double scale, turn_deg;
     /* the look */
     double azimuth_deg, depression_deg, wavelength_m;
+    double distance_m;                                                         /* 0: plane waves */
+    double receiver_azimuth_deg, receiver_depression_deg, receiver_distance_m; /* NAN: not given */
     double cell_m;
     long cells, rays_per_cell, bounces, threads;
     bool has_no_ground;
@@ -30,6 +32,7 @@ enum {
     SETUP_MODEL_OPTIONS = 5,
     SETUP_RAY_OPTIONS = 4,
     SETUP_TRACE_OPTIONS = SETUP_RAY_OPTIONS + 4,
+    SETUP_ENDS_OPTIONS = 4,
     SETUP_LAW_OPTIONS = 3,
     SETUP_CHIP_OPTIONS = SETUP_LAW_OPTIONS + 5,
     SETUP_OPTIONS = SETUP_MODEL_OPTIONS + SETUP_TRACE_OPTIONS + SETUP_CHIP_OPTIONS
@@ -42,6 +45,7 @@ struct setup setup_default(void);
 void setup_model_options(struct setup *s, struct hs_option *o);
 void setup_ray_options(struct setup *s, struct hs_option *o);
 void setup_trace_options(struct setup *s, struct hs_option *o); /* without the azimuth */
+void setup_ends_options(struct setup *s, struct hs_option *o);  /* in no other group */
 void setup_law_options(struct setup *s, struct hs_option *o);
 void setup_chip_options(struct setup *s, struct hs_option *o); /* law and chip */
 void setup_options(struct setup *s, struct hs_option *o);      /* all three, the model first */

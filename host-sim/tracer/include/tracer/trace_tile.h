@@ -3,6 +3,7 @@
 #define TRACER_TRACE_TILE_H
 
 #include "tracer/embree_baseline.h"
+#include "tracer/ends.h"
 #include "tracer/projection.h"
 #include "tracer/records.h"
 #include "tracer/scene.h"
@@ -15,6 +16,9 @@ struct trace_tiles {
     const struct scene *scene; /* borrowed */
     struct trace_axes axes;
     struct trace_sensor sensor;
+    struct ends ends; /* in the model's axes */
+    bool is_plain;    /* one radar, far away */
+    bool is_apart;    /* even after the first reflection the way back may be blocked */
     /* Primary rays are drawn, not cast, unless the model has more triangles than there are rays. */
     bool is_drawn;
     struct projection model, mirror; /* owned; a strip of each is a tile */

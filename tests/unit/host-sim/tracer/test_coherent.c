@@ -27,8 +27,11 @@ static struct reflect_law metal_law(enum reflect_kind kind)
 static struct trace_records traced(struct mesh *m, double depression_deg, double cell_m,
                                    uint32_t rays)
 {
-    const struct trace_order o = {
-        {0, depression_deg, lambda}, {128, 128, cell_m}, rays, TRACE_BOUNCES_MAX, 2};
+    const struct trace_order o = {.look = {0, depression_deg, lambda},
+                                  .grid = {128, 128, cell_m},
+                                  .rays_per_cell = rays,
+                                  .bounces = TRACE_BOUNCES_MAX,
+                                  .threads = 2};
     struct scene s;
     struct trace_records r;
     assert_int_equal(scene_open(&s, m, 0, "test"), 0);
@@ -427,7 +430,11 @@ TEST(rough_ground_speckles_by_the_sum_of_its_scatterers)
     struct mesh m = {0};
     struct scene s;
     struct trace_records r;
-    const struct trace_order o = {{0, 15, lambda}, {CELLS, CELLS, 0.1}, 2, 1, 2};
+    const struct trace_order o = {.look = {0, 15, lambda},
+                                  .grid = {CELLS, CELLS, 0.1},
+                                  .rays_per_cell = 2,
+                                  .bounces = 1,
+                                  .threads = 2};
     shape_box(&m, (struct vec){0, 0, 0}, (struct vec){0.01, 0.01, 0.01},
               mesh_material(&m, "metal"));
     assert_int_equal(scene_open(&s, &m, trace_ground_half_m(&o.grid, 15), "test"), 0);

@@ -21,11 +21,11 @@ static struct look looked_at(struct mesh m, double azimuth_deg, double depressio
 {
     struct look l = {.mesh = m,
                      .law = {.kind = REFLECT_RAYSAR, .wavelength_m = TRACE_WAVELENGTH_M}};
-    const struct trace_order o = {{azimuth_deg, depression_deg, TRACE_WAVELENGTH_M},
-                                  {128, 128, 0.1},
-                                  2,
-                                  TRACE_BOUNCES_MAX,
-                                  2};
+    const struct trace_order o = {.look = {azimuth_deg, depression_deg, TRACE_WAVELENGTH_M},
+                                  .grid = {128, 128, 0.1},
+                                  .rays_per_cell = 2,
+                                  .bounces = TRACE_BOUNCES_MAX,
+                                  .threads = 2};
     for (int i = 0; i < TRACE_MATERIALS_MAX; i++) {
         l.law.materials[i] =
             (struct reflect_material){.specular = 0.5, .roughness = 1, .diffuse = 0.5};

@@ -51,6 +51,45 @@ TEST(what_is_written_is_read_back_to_the_bit)
     trace_records_free(&r);
 }
 
+static size_t load(const char *path, uint8_t **bytes);
+
+/* Ends that are not plain make another version, so that who does not know them refuses the file. */
+TEST(where_transmitter_and_receiver_stand_is_read_back)
+{
+    static const struct {
+        struct trace_ends ends;
+        bool is_sound;
+        uint8_t version;
+    } cases[] = {
+        {{0, false, 0, 0, 0}, true, 1},      {{25, false, 0, 0, 0}, true, 2},
+        {{0, true, 0, 30, 0}, true, 2},      {{25, true, 310, 20, 1e6}, true, 2},
+        {{0.001, false, 0, 0, 0}, false, 0}, {{NAN, false, 0, 0, 0}, false, 0},
+        {{25, false, 310, 0, 0}, false, 0},  {{25, true, 360, 30, 0}, false, 0},
+        {{25, true, 310, 90, 0}, false, 0},  {{25, true, 310, 30, -1}, false, 0},
+    };
+    for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
+        struct trace_records r, again;
+        known_dihedral(&r, 1, 0.5, 15, RAYS);
+        r.ends = cases[i].ends;
+        assert_int_equal(trace_records_write(&r, scratch()), cases[i].is_sound ? 0 : -1);
+        trace_records_free(&r);
+        if (!cases[i].is_sound) {
+            continue;
+        }
+        assert_int_equal(trace_records_read(&again, scratch()), 0);
+        const struct trace_ends *found = &again.ends, *given = &cases[i].ends;
+        assert_true(found->distance_m == given->distance_m && found->is_apart == given->is_apart &&
+                    found->receiver_azimuth_deg == given->receiver_azimuth_deg &&
+                    found->receiver_depression_deg == given->receiver_depression_deg &&
+                    found->receiver_distance_m == given->receiver_distance_m);
+        trace_records_free(&again);
+        uint8_t *bytes;
+        load(scratch(), &bytes);
+        assert_int_equal(bytes[8], cases[i].version);
+        free(bytes);
+    }
+}
+
 static size_t load(const char *path, uint8_t **bytes)
 {
     FILE *in = fopen(path, "rb");

@@ -8,8 +8,11 @@
 
 static struct trace_records traced(struct mesh *m, double depression_deg, double ground_half_m)
 {
-    const struct trace_order o = {
-        {0, depression_deg, TRACE_WAVELENGTH_M}, {128, 128, 0.05}, 8, 2, 2};
+    const struct trace_order o = {.look = {0, depression_deg, TRACE_WAVELENGTH_M},
+                                  .grid = {128, 128, 0.05},
+                                  .rays_per_cell = 8,
+                                  .bounces = 2,
+                                  .threads = 2};
     struct scene s;
     struct trace_records r;
     assert_int_equal(scene_open(&s, m, ground_half_m, "test"), 0);

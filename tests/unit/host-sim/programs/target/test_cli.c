@@ -46,6 +46,33 @@ TEST(a_command_line_without_sense_ends_with_2)
     assert_int_equal(run("render --model slicy --complex y.tif"), 2);
     assert_int_equal(run("render --model slicy --weighting taylor --csv y.csv"), 2);
     assert_int_equal(run("render --model slicy --coherent --looks 2 --csv y.csv"), 2);
+    assert_int_equal(run("render --model slicy --distance 50 --squint 9 --csv y.csv"), 2);
+    assert_int_equal(run("sheet --model slicy --distance 50 --out y.png"), 2);
+}
+
+/* A near radar and a receiver apart go from trace to render by way of the file. */
+TEST(near_and_bistatic_pictures_come_from_a_model_or_its_records)
+{
+    static const char ends[] = "--distance 40 --receiver-azimuth 70 --receiver-distance 30";
+    char line[256];
+    snprintf(line, sizeof line,
+             "trace --model slicy --rays 1 --depression 40 %s --out ends.trace >log", ends);
+    assert_int_equal(run(line), 0);
+    snprintf(line, sizeof line, "render --model slicy --rays 1 --depression 40 %s --csv model.csv",
+             ends);
+    assert_int_equal(run(line), 0);
+    assert_int_equal(run("render --records ends.trace --csv records.csv"), 0);
+    assert_int_equal(shell("cmp model.csv records.csv"), 0);
+    assert_int_equal(run("render --model slicy --rays 1 --depression 40 --csv far.csv"), 0);
+    assert_int_equal(shell("! cmp -s model.csv far.csv"), 0);
+    assert_int_equal(run("render --records ends.trace --squint 20 --csv x.csv 2>errors"), 1);
+    assert_int_equal(shell("grep -q 'traced with --distance or a receiver apart' errors"), 0);
+    assert_int_equal(run("render --records ends.trace --coherent --complex ends.tif"), 0);
+    assert_int_equal(shell("gdalinfo ends.tif | grep -q 'ENDS=40; 70 40 30'"), 0);
+    assert_int_equal(run("render --model slicy --distance 5 --csv x.csv 2>errors"), 1);
+    assert_int_equal(shell("grep -q 'distance: it stands 1.29 m high' errors"), 0);
+    assert_int_equal(run("render --model slicy --receiver-azimuth 180 --csv x.csv 2>errors"), 1);
+    assert_int_equal(shell("grep -q 'receiver-azimuth: is 180 degrees from' errors"), 0);
 }
 
 /* A closed body of 7 m, moved and scaled: whatever the picture would not show is said. */
