@@ -86,45 +86,49 @@ static int start_unit(struct bench *b, const struct bench_scene *scene)
     return lm_unit_init(b->unit, &b->board);
 }
 
-static void close_files(struct bench *b)
+static bool has_file(const struct bench *b, uint32_t place)
 {
-    while (b->flash_count > 0) {
-        drv_flash_file_close(&b->flash[--b->flash_count]);
-    }
+    return b->flash[place].port.read_start != NULL;
 }
 
-static int open_file(struct bench *b, const char *path, bool is_first)
+static void close_files(struct bench *b)
 {
-    const int cause = drv_flash_file_open(&b->flash[b->flash_count], path);
-    b->flash_count += cause == 0;
+    for (uint32_t i = 0; i < LM_IMAGES_MAX; i++) {
+        if (has_file(b, i)) {
+            drv_flash_file_close(&b->flash[i]);
+        }
+    }
+    memset(b->flash, 0, sizeof b->flash);
+}
+
+static int open_file(struct bench *b, uint32_t place, const char *path)
+{
+    const int cause = drv_flash_file_open(&b->flash[place], path);
     if (cause != 0) {
-        snprintf(b->error, sizeof b->error, "%s%scannot be opened: %s", is_first ? "" : path,
-                 is_first ? "" : ": ", strerror(cause));
+        snprintf(b->error, sizeof b->error, "%s%scannot be opened: %s", place == 0 ? "" : path,
+                 place == 0 ? "" : ": ", strerror(cause));
     }
     return cause;
 }
 
 static int open_files(struct bench *b, const struct bench_scene *scene)
 {
-    int cause = open_file(b, scene->database, true);
-    for (uint32_t i = 0; i < LM_IMAGES_MAX - 1 && cause == 0; i++) {
-        cause = scene->further[i] ? open_file(b, scene->further[i], false) : 0;
+    int cause = open_file(b, 0, scene->database);
+    for (uint32_t i = 1; i < LM_IMAGES_MAX && cause == 0; i++) {
+        cause = scene->further[i - 1] ? open_file(b, i, scene->further[i - 1]) : 0;
     }
     return cause;
 }
 
-/* The flash of the board: the file, or the files one behind the other. */
+/* The flash of the board: the files, each at its place. */
 static void lend_flash(struct bench *b)
 {
-    const struct lm_flash *flash[LM_IMAGES_MAX] = {&b->flash[0].port};
-    for (uint32_t i = 1; i < b->flash_count; i++) {
-        flash[i] = &b->flash[i].port;
+    const struct lm_flash *flash[LM_IMAGES_MAX];
+    for (uint32_t i = 0; i < LM_IMAGES_MAX; i++) {
+        flash[i] = has_file(b, i) ? &b->flash[i].port : NULL;
     }
-    b->board.flash = flash[0];
-    if (b->flash_count > 1) {
-        drv_flash_joined_open(&b->joined, flash, b->flash_count, b->board.images);
-        b->board.flash = &b->joined.port;
-    }
+    drv_flash_joined_open(&b->joined, flash, LM_IMAGES_MAX, b->board.images);
+    b->board.flash = &b->joined.port;
 }
 
 int bench_open(struct bench *b, const struct bench_scene *scene, const struct bench_glass *glass,

@@ -13,9 +13,8 @@
 enum { BENCH_TILE_SLOTS = 384, BENCH_BUFFERS = 2 };
 
 struct bench {
-    struct drv_flash_file flash[LM_IMAGES_MAX];
-    uint32_t flash_count;
-    struct drv_flash_joined joined; /* of several */
+    struct drv_flash_file flash[LM_IMAGES_MAX]; /* without a file: all zero */
+    struct drv_flash_joined joined;
     struct lm_display display;
     uint32_t *buffer[BENCH_BUFFERS]; /* owned: width_px * height_px each, 0x00RRGGBB */
     uint32_t *glass;                 /* the one of the last frame presented */

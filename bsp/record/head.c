@@ -21,12 +21,12 @@ static uint32_t crc_of_head(const uint8_t *bytes, uint32_t length)
     return fx_crc32c(fx_crc32c(0, bytes, before), bytes + after, length - after);
 }
 
-static uint32_t crc_of_flash(const struct lm_flash *flash, uint32_t polls)
+uint32_t record_image_crc(const struct lm_flash *flash, const struct lm_flash_part *part,
+                          uint32_t polls)
 {
     static uint8_t bytes[HEAD_BYTES];
-    const uint32_t length =
-        flash->size_bytes < HEAD_BYTES ? (uint32_t)flash->size_bytes : HEAD_BYTES;
-    if (length == 0 || flash->read_start(flash->ctx, 0, bytes, length) != LM_OK) {
+    const uint32_t length = part->bytes < HEAD_BYTES ? (uint32_t)part->bytes : HEAD_BYTES;
+    if (length == 0 || flash->read_start(flash->ctx, part->offset, bytes, length) != LM_OK) {
         return 0;
     }
     for (uint32_t i = 0; i < polls; i++) {
@@ -143,12 +143,26 @@ static uint32_t switches_of(const struct lm_board *b)
     return word | (uint32_t)b->bus_partner << RECORD_PARTNER_BIT;
 }
 
+/* The images beside the first. */
+static void describe_further(struct record_head *head, const struct lm_board *board)
+{
+    for (uint32_t i = 1; i <= RECORD_FURTHER && i < LM_IMAGES_MAX; i++) {
+        const struct lm_flash_part *part = &board->images[i];
+        if (board->images[0].bytes != 0 && part->bytes != 0) {
+            head->further[i - 1] = (struct record_image){
+                part->bytes, record_image_crc(board->flash, part, board->flash_poll_limit)};
+        }
+    }
+}
+
 void record_describe_plain(struct record_head *head, const struct lm_board *board, uint64_t zero_us)
 {
+    const struct lm_flash_part whole = {0, board->flash->size_bytes};
+    const struct lm_flash_part *first = board->images[0].bytes != 0 ? board->images : &whole;
     *head = (struct record_head){
         .zero_us = zero_us,
-        .image_bytes = board->flash->size_bytes,
-        .image_crc = crc_of_flash(board->flash, board->flash_poll_limit),
+        .image_bytes = first->bytes,
+        .image_crc = record_image_crc(board->flash, first, board->flash_poll_limit),
         .width_px = board->display->width_px,
         .height_px = board->display->height_px,
         .tile_slots = (uint32_t)(board->tile_pool_bytes / sizeof(struct lm_tile)),
@@ -164,6 +178,7 @@ void record_describe_plain(struct record_head *head, const struct lm_board *boar
               board->bus_profile ? board->bus_profile->name : NULL);
     copy_word(head->restart, sizeof head->restart, board->restart);
     copy_word(head->build, sizeof head->build, record_build);
+    describe_further(head, board);
     head->has_nodes = board->bus_nodes != NULL;
     if (head->has_nodes) {
         memcpy(head->nodes, board->bus_nodes, sizeof head->nodes);

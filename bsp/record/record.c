@@ -348,6 +348,22 @@ static void wrap(struct recorder *r, struct lm_board *board)
     board->display = &r->display_of_unit;
 }
 
+/* The images beside the first, if there are any. */
+static void put_images(struct recorder *r, const struct record_head *head)
+{
+    uint8_t bytes[RECORD_FURTHER * RECORD_IMAGE_BYTES];
+    uint64_t all = 0;
+    for (uint32_t i = 0; i < sizeof bytes; i++) {
+        const struct record_image *image = &head->further[i / RECORD_IMAGE_BYTES];
+        const uint32_t at = i % RECORD_IMAGE_BYTES;
+        bytes[i] = (uint8_t)(at < 8 ? image->bytes >> 8 * at : image->crc >> 8 * (at - 8));
+        all |= image->bytes;
+    }
+    if (all != 0) {
+        put_blob(r, RECORD_IMAGES, bytes, sizeof bytes);
+    }
+}
+
 void record_begin_as(struct recorder *r, const struct record_sink *sink, struct lm_board *board,
                      const struct record_head *head, const struct record_options *options)
 {
@@ -366,6 +382,7 @@ void record_begin_as(struct recorder *r, const struct record_sink *sink, struct 
     if (head->has_nodes) {
         put_blob(r, RECORD_NODES, head->nodes, sizeof head->nodes);
     }
+    put_images(r, head);
 }
 
 void record_begin(struct recorder *r, const struct record_sink *sink, struct lm_board *board,

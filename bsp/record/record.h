@@ -42,6 +42,7 @@ enum {
         18,          /* blob: the settings that the unit began with, where not those of power-up */
     RECORD_ROW = 19, /* checksum of one row of a picture presented */
     RECORD_SUM = 20, /* checksum of the lines since the last such line, or since the beginning */
+    RECORD_IMAGES = 21, /* blob: the further images, where there are any */
     RECORD_KINDS
 };
 
@@ -60,6 +61,8 @@ enum record_reason {
 };
 
 enum {
+    RECORD_FURTHER = 3,      /* images beside the first */
+    RECORD_IMAGE_BYTES = 12, /* of one in the blob */
     RECORD_BLOB_MAX = 255,
     RECORD_LINE_MAX = 80,
     RECORD_TICK_US = 2000,  /* the pause between steps that costs least to write */
@@ -78,11 +81,17 @@ struct record_sink {
  * The same on every board. */
 extern const char record_build[];
 
+/* An image beside the first: its bytes, 0 if there is none, and a checksum as of the first. */
+struct record_image {
+    uint64_t bytes;
+    uint32_t crc;
+};
+
 /* What a recording says of itself. */
 struct record_head {
     char version[16];     /* of the firmware */
     uint64_t zero_us;     /* time of the log at which the unit's clock is 0 */
-    uint64_t image_bytes; /* of the flash */
+    uint64_t image_bytes; /* of the flash, or of its first image where it has several */
     uint32_t image_crc;   /* CRC-32C of its first 4 KiB without the header's own checksum */
     uint32_t profile_crc; /* of the bus's table, every number of it */
     uint32_t radar_crc;   /* of the board's radar table; 0: the image's or the built-in one */
@@ -97,7 +106,8 @@ struct record_head {
     char build[16];    /* record_build of the program that recorded */
     /* Not words of the head, but lines below it. */
     bool has_settings;
-    struct lm_settings settings; /* of before the restart */
+    struct lm_settings settings;                 /* of before the restart */
+    struct record_image further[RECORD_FURTHER]; /* images of the start; none: all zero */
     bool has_nodes;
     uint8_t nodes[LM_BUS_NODE_BYTES]; /* that are heard; without has_nodes all are */
 };
@@ -155,13 +165,18 @@ struct recorder {
     } lines;
 };
 
-/* Fill the head for a board. Reads 4 KiB of the flash, and waits for them, at most
+/* Fill the head for a board. Reads 4 KiB of each image of the flash, and waits for them, at most
  * flash_poll_limit polls. */
 void record_describe(struct record_head *head, const struct lm_board *board, uint64_t zero_us);
 
 /* The same of a board that brings neither tables of the bus nor a radar table: a small program. */
 void record_describe_plain(struct record_head *head, const struct lm_board *board,
                            uint64_t zero_us);
+
+/* Checksum of an image that lies in a part of a flash: CRC-32C of its first 4 KiB without the
+ * header's own checksum. 0 if they cannot be read. */
+uint32_t record_image_crc(const struct lm_flash *flash, const struct lm_flash_part *part,
+                          uint32_t polls);
 
 /* Read the text of a head. Returns false for any other text. */
 bool record_head_read(struct record_head *head, const char *text);

@@ -186,6 +186,21 @@ static void join_blob(struct replay *p)
     e->blob[e->blob_bytes] = '\0';
 }
 
+/* The images beside the first. */
+static void take_images(struct record_head *h, const uint8_t *bytes)
+{
+    for (uint32_t i = 0; i < RECORD_FURTHER; i++, bytes += RECORD_IMAGE_BYTES) {
+        struct record_image *image = &h->further[i];
+        *image = (struct record_image){0};
+        for (uint32_t k = 0; k < 8; k++) {
+            image->bytes |= (uint64_t)bytes[k] << 8 * k;
+        }
+        for (uint32_t k = 0; k < 4; k++) {
+            image->crc |= (uint32_t)bytes[8 + k] << 8 * k;
+        }
+    }
+}
+
 /* A blob that is a setting of the board. True if it is one. */
 static bool take_setting(struct replay *p)
 {
@@ -194,6 +209,10 @@ static bool take_setting(struct replay *p)
     if (e->frame.id == RECORD_NODES && e->blob_bytes == sizeof h->nodes) {
         h->has_nodes = true;
         memcpy(h->nodes, e->blob, sizeof h->nodes);
+        return true;
+    }
+    if (e->frame.id == RECORD_IMAGES && e->blob_bytes == RECORD_FURTHER * RECORD_IMAGE_BYTES) {
+        take_images(h, e->blob);
         return true;
     }
     if (e->frame.id == RECORD_SETTINGS && e->blob_bytes == sizeof h->settings) {
@@ -214,7 +233,7 @@ static bool take_setting(struct replay *p)
 static bool is_blob(uint32_t kind)
 {
     return kind == RECORD_HEAD || kind == RECORD_CONTROL || kind == RECORD_NODES ||
-           kind == RECORD_RESTART || kind == RECORD_SETTINGS;
+           kind == RECORD_RESTART || kind == RECORD_SETTINGS || kind == RECORD_IMAGES;
 }
 
 /* See that the next event is there. */
@@ -531,6 +550,22 @@ int replay_begin(struct replay *p, enum replay_line (*next_line)(struct replay *
     return 0;
 }
 
+/* What differs in the images beside the first, or NULL. One that the recording lacks may be at
+ * hand: it is not shown. */
+static const char *further_difference(const struct record_head *h, const struct record_head *mine)
+{
+    static const char *const words[RECORD_FURTHER] = {"another second image", "another third image",
+                                                      "another fourth image"};
+    for (uint32_t i = 0; i < RECORD_FURTHER; i++) {
+        const struct record_image *theirs = &h->further[i], *ours = &mine->further[i];
+        if (theirs->bytes != 0 &&
+            (ours->bytes == 0 || theirs->bytes < ours->bytes || theirs->crc != ours->crc)) {
+            return words[i];
+        }
+    }
+    return NULL;
+}
+
 const char *replay_difference(const struct replay *p, const struct record_head *mine)
 {
     const struct record_head *h = &p->head;
@@ -538,7 +573,7 @@ const char *replay_difference(const struct replay *p, const struct record_head *
            : h->image_bytes < mine->image_bytes || h->image_crc != mine->image_crc ? "another image"
            : h->profile_crc != mine->profile_crc ? "another table of the bus"
            : h->radar_crc != mine->radar_crc     ? "another radar table"
-                                                 : NULL;
+                                                 : further_difference(h, mine);
 }
 
 bool replay_is_other_build(const struct replay *p)
@@ -567,6 +602,9 @@ static void set_board(struct replay *p, struct lm_board *board)
     board->tile_pool_bytes = h->tile_slots * sizeof(struct lm_tile);
     board->bus_nodes = h->has_nodes ? p->head.nodes : NULL;
     board->settings = h->has_settings ? &h->settings : NULL;
+    for (uint32_t i = 1; i <= RECORD_FURTHER && i < LM_IMAGES_MAX; i++) {
+        board->images[i].bytes = h->further[i - 1].bytes;
+    }
     board->restart = is_same(h->restart, "-") || h->restart[0] == '\0' ? NULL : p->head.restart;
 }
 

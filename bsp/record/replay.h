@@ -89,8 +89,9 @@ struct replay {
 int replay_open(struct replay *p, const char *path);
 
 /* Compare the head with what this program has. Returns NULL, or in static memory what differs: the
- * version, the image, the table of the bus or the radar. `mine` is described by record_describe.
- * Its image may be a file without what lay behind it in a board's flash. */
+ * version, an image, the table of the bus or the radar. `mine` is described by record_describe. Its
+ * image may be a file without what lay behind it in a board's flash; it may have further images
+ * that the recording lacks. */
 const char *replay_difference(const struct replay *p, const struct record_head *mine);
 
 /* Whether it was recorded by another build of this firmware. That is no reason not to show it: the

@@ -6,7 +6,7 @@ static int read_start(void *ctx, uint64_t offset, void *destination, uint32_t le
 {
     struct drv_flash_joined *j = ctx;
     const uint64_t number = offset >> DRV_FLASH_JOINED_LOG2;
-    if (number >= j->count) {
+    if (number >= LM_IMAGES_MAX || j->flash[number] == NULL) {
         return LM_ERR_RANGE;
     }
     j->reading = j->flash[number];
@@ -20,17 +20,23 @@ static int read_poll(void *ctx)
     return j->reading->read_poll(j->reading->ctx);
 }
 
+struct lm_flash_part drv_flash_joined_put(struct drv_flash_joined *j, uint32_t number,
+                                          const struct lm_flash *flash)
+{
+    j->flash[number] = flash;
+    return (struct lm_flash_part){(uint64_t)number << DRV_FLASH_JOINED_LOG2,
+                                  flash != NULL ? flash->size_bytes : 0};
+}
+
 void drv_flash_joined_open(struct drv_flash_joined *j, const struct lm_flash *const flash[],
                            uint32_t count, struct lm_flash_part *parts)
 {
-    *j = (struct drv_flash_joined){.count = count, .reading = flash[0]};
+    *j = (struct drv_flash_joined){.reading = flash[0]};
     for (uint32_t i = 0; i < LM_IMAGES_MAX; i++) {
-        const uint64_t offset = (uint64_t)i << DRV_FLASH_JOINED_LOG2;
-        parts[i] = (struct lm_flash_part){offset, i < count ? flash[i]->size_bytes : 0};
-        j->flash[i] = i < count ? flash[i] : NULL;
+        parts[i] = drv_flash_joined_put(j, i, i < count ? flash[i] : NULL);
     }
     j->port = (struct lm_flash){.ctx = j,
-                                .size_bytes = parts[count - 1].offset + parts[count - 1].bytes,
+                                .size_bytes = (uint64_t)LM_IMAGES_MAX << DRV_FLASH_JOINED_LOG2,
                                 .read_start = read_start,
                                 .read_poll = read_poll};
 }

@@ -121,8 +121,11 @@ static int open_further(struct lm_unit_map *m, const struct lm_unit_map_lent *le
 /* Open the images of the parts. The first that can be used brings the tables. */
 static void open_parts(struct lm_unit_map *m, const struct lm_unit_map_lent *lent)
 {
-    for (uint32_t i = 0; i < LM_IMAGES_MAX && (i == 0 || lent->parts[i].bytes != 0); i++) {
+    for (uint32_t i = 0; i < LM_IMAGES_MAX; i++) {
         const struct lm_flash_part *part = &lent->parts[i];
+        if (i > 0 && part->bytes == 0) {
+            continue;
+        }
         if (LM_IMAGES_MAX > 1 && m->image_count > 0) {
             m->part_status[i] = open_further(m, lent, part);
             continue;

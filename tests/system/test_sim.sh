@@ -323,6 +323,26 @@ check 'with the same pictures' diff -r "$work/two" "$work/two-again"
 check 'and no departure' grep -qE 'failed 0; departures 0$' "$out"
 check 'under another table of the second it is refused' exits 1 "$sim" --db "$db" --replay "$work/two.log"
 
+# Two images in one recording
+"$tool" range "$work/range.lmdb" || exit 1
+"$tool" other-range "$work/other-range.lmdb" || exit 1
+printf '0 range 10\n0.5 sar 46 11 5\n' >"$work/range.script"
+check 'a flight over two images is recorded' exits 0 "$sim" --db "$db" --db2 "$work/range.lmdb" --bus "$log" \
+    --script "$work/range.script" --seconds 3 --png "$work/beside" --every 10 --record "$work/beside.log"
+check 'and shown again' exits 0 "$sim" --db "$db" --db2 "$work/range.lmdb" --replay "$work/beside.log" \
+    --png "$work/beside-again" --every 10
+check 'with the same pictures' diff -r "$work/beside" "$work/beside-again"
+check 'and no departure' grep -qE 'failed 0; departures 0$' "$out"
+check 'without the second it is refused' exits 1 "$sim" --db "$db" --replay "$work/beside.log"
+check 'and said why' said 'made with another second image'
+check 'with another one too' exits 1 "$sim" --db "$db" --db2 "$work/other-range.lmdb" --replay "$work/beside.log"
+check 'and said why again' said 'made with another second image'
+check 'at another place it is refused as well' exits 1 "$sim" --db "$db" --db3 "$work/range.lmdb" \
+    --replay "$work/beside.log"
+check 'unless told' exits 0 "$sim" --db "$db" --db2 "$work/other-range.lmdb" --replay "$work/beside.log" --replay-anyway
+check 'an image that the recording lacks is not shown' exits 0 "$sim" --db "$db" --db2 "$work/range.lmdb" \
+    --replay "$work/rec.log"
+
 # The window
 check 'without a screen the flight goes on' \
     env SDL_VIDEODRIVER=nosuch "$sim" --db "$db" --bus "$log" --seconds 0.3 --window --quiet 2>"$last_error"

@@ -3,6 +3,8 @@
  *   test_sim_tool image FILE            a small image round 46 N 11 E, 5 MB
  *   test_sim_tool break-fine FILE       the same, each record below the coarsest level damaged
  *   test_sim_tool leave-fine-out FILE   the same without the two finest levels
+ *   test_sim_tool range FILE            an image with cells half as long around the middle of it
+ *   test_sim_tool other-range FILE      the same with other ground
  *   test_sim_tool pixels FILE.png RRGGBB    print how many pixels have that colour
  *   test_sim_tool size FILE.png             print WIDTHxHEIGHT */
 #include "tiny_country.h"
@@ -35,6 +37,30 @@ static int write_image(const char *path, bool is_broken, bool is_coarse)
     for (size_t i = 0; is_broken && i < image.record_count; i++) {
         uint8_t *record = image.bytes + image.tiles_offset + i * LM_TILE_BYTES;
         record[1000] ^= (uint8_t)(record[4] < TOP_LEVEL); /* byte 4: level */
+    }
+    const int status = tiny_image_write(&image, path);
+    tiny_image_free(&image);
+    return status != 0;
+}
+
+static struct tiny_cell trees(void *ctx, const struct tiny_place *p)
+{
+    const double *dice_m = ctx;
+    const bool is_dark = ((int)(p->east_m / *dice_m) + (int)(p->north_m / 90)) % 2 == 0;
+    return (struct tiny_cell){is_dark ? -30 : -5, is_dark ? TINY_SOIL : TINY_TREES, 0};
+}
+
+static int write_range(const char *path, double dice_m)
+{
+    struct tiny_spec spec = tiny_country(8);
+    spec.shift0--;
+    spec.rows = spec.columns = 6;
+    spec.level_count = 3;
+    spec.cell = trees;
+    spec.ctx = &dice_m;
+    struct tiny_image image;
+    if (tiny_image_build(&image, &spec) != 0) {
+        return 1;
     }
     const int status = tiny_image_write(&image, path);
     tiny_image_free(&image);
@@ -78,6 +104,12 @@ int main(int argc, char **argv)
     }
     if (argc == 3 && strcmp(argv[1], "leave-fine-out") == 0) {
         return write_image(argv[2], false, true);
+    }
+    if (argc == 3 && strcmp(argv[1], "range") == 0) {
+        return write_range(argv[2], 120);
+    }
+    if (argc == 3 && strcmp(argv[1], "other-range") == 0) {
+        return write_range(argv[2], 70);
     }
     if (argc == 4 && strcmp(argv[1], "pixels") == 0) {
         return look(argv[2], argv[3]);

@@ -1,5 +1,6 @@
 /* landmass-sim: the display unit's firmware on a PC. */
 #include "bench.h"
+#include "images.h"
 #include "options.h"
 
 #include "bus/table_text.h"
@@ -13,7 +14,6 @@
 #include "hs/report.h"
 #include "lm/bit.h"
 #include "lm/bus_filters.h"
-#include "lm/sensor.h"
 #include "radar/text.h"
 #include "sim/bezel.h"
 #include "sim/drill.h"
@@ -38,6 +38,7 @@ struct sim {
     struct bus_table table, table_2; /* of --table, --table2 */
     struct script script;
     struct bench bench;
+    struct images images;
     FILE *log_file;
     struct drv_can_log log;
     FILE *log_file_2; /* of --bus2 */
@@ -356,7 +357,7 @@ static int open_again(struct sim *s, const struct bench_bus *bus)
                                       .is_any_replayed = o->is_any_replayed};
     if (bench_open(&s->bench, &scene, &glass, 0, bus, &s->hands.port) != 0) {
         return hs_error(o->replay,
-                        "name the image, the tables of the bus and --radar of the recording; "
+                        "name the images, the tables of the bus and --radar of the recording; "
                         "--replay-anyway shows it with these",
                         "%s", s->bench.error);
     }
@@ -572,6 +573,7 @@ static void report_flight(const struct sim *s)
     hs_report_put("position_jumps", u->nav.position_jumps);
     hs_report_put("commands_refused", u->count.commands_refused);
     report_bus(s);
+    images_report(&s->images, &u->map, s->bench.board.images);
     hs_report_flag("map_is_usable", u->map.is_usable);
     if (u->map.is_usable) {
         report_map(u);
@@ -686,41 +688,6 @@ static int open_bezel(struct sim *s)
     return 0;
 }
 
-/* The unit runs without an image, too. */
-static void warn_of_image(const struct lm_unit_map *map, const char *path, int status,
-                          bool is_further)
-{
-    if (status == LM_ERR_VERSION) {
-        hs_warn(path, "`landmass-db convert OLD NEW` makes a new image of an old one",
-                "is a flash image of another version");
-    } else if (status == LM_ERR_SENSOR && is_further) {
-        hs_warn(path, "build both for one radar",
-                "is not shown: its reflectivity is of another band than that of --db");
-    } else if (status == LM_ERR_SENSOR) {
-        hs_warn(path, "build it for this radar, or name its own with --radar",
-                "its reflectivity is of band %s, the radar's is %s", lm_sensor_word(map->db.sensor),
-                lm_sensor_word(map->radar->sensor));
-    } else if (status == LM_ERR_TABLE && is_further) {
-        hs_warn(path, "build both with one class table, and give the radar table to --db alone",
-                "is not shown: its classes or its radar table are not those of --db");
-    } else if (status != LM_OK) {
-        hs_warn(path, "landmass-db verify tells what is wrong", "is no usable flash image");
-    }
-}
-
-static void warn_of_database(const struct sim *s)
-{
-    const struct options *o = &s->options;
-    const struct lm_unit_map *map = &s->bench.unit->map;
-    uint32_t part = 1;
-    warn_of_image(map, o->database, map->part_status[0], false);
-    for (uint32_t i = 0; i < LM_IMAGES_MAX - 1; i++) {
-        if (o->further[i]) {
-            warn_of_image(map, o->further[i], map->part_status[part++], true);
-        }
-    }
-}
-
 /* Hear `profile` on that interface besides. Two tables of one interface must not claim one
  * identifier. */
 static int hear_beside(struct bench_bus *bus, const struct lm_bus_profile *first,
@@ -760,6 +727,15 @@ static int choose_tables(struct sim *s, struct bench_bus *bus)
     return o->table_2 ? hear_beside(bus, second, &s->table_2.profile, 1) : 0;
 }
 
+static void warn_of_images(struct sim *s)
+{
+    const struct options *o = &s->options;
+    s->images = (struct images){{o->database, o->further[0], o->further[1], o->further[2]}};
+    for (uint32_t i = 0; i < LM_IMAGES_MAX; i++) {
+        images_warn(&s->images, &s->bench.unit->map, i);
+    }
+}
+
 /* Another build may show the same: the checks tell. */
 static void warn_of_build(const struct sim *s)
 {
@@ -779,7 +755,7 @@ static int run_again(struct sim *s, const struct bench_bus *bus)
     if (open_again(s, bus) != 0) {
         return -1;
     }
-    warn_of_database(s);
+    warn_of_images(s);
     warn_of_build(s);
     s->options.width_px = (uint16_t)s->replay.head.width_px;
     s->options.height_px = (uint16_t)s->replay.head.height_px;
@@ -808,7 +784,7 @@ static int run_flight(struct sim *s, const struct bench_bus *bus)
     if (bench_open(&s->bench, &scene, &glass, o->seed, bus, &s->hands.port) != 0) {
         return hs_error(o->database, "landmass-db build makes a database", "%s", s->bench.error);
     }
-    warn_of_database(s);
+    warn_of_images(s);
     /* What an interface lets through is what the unit hears, which the database may say. */
     if (open_bus(s) != 0 || open_second_log(s) != 0 || open_sent_log(s) != 0 ||
         script_read(&s->script, o->script, s->bench.unit->map.radar) != 0 || open_drill(s) != 0 ||

@@ -66,8 +66,8 @@ struct lm_board {
         *radar; /* NULL: the image's table, or the built-in one where it has none */
     const struct lm_flash *flash;
     struct lm_flash_part images[LM_IMAGES_MAX]; /* where images lie in the flash, the one with the
-                               tables, targets and signatures first; the first of no bytes ends
-                               them. None: the flash has one image, at its start */
+                               tables, targets and signatures first; of no bytes: no image there.
+                               Without the first the flash has one image, at its start */
     const struct lm_can *can;
     const struct lm_bus_profile
         *bus_profile;           /* NULL: the image's table, or lm_bus_canas17 where it has none */

@@ -59,8 +59,8 @@ struct lm_unit_map_lent {
     const struct lm_radar *radar; /* the board's table, which lm_radar_check has passed; NULL: the
                                    * image's, or the one that is built in where it has none */
     bool has_bus_profile;         /* the board has its own: the image's is not read */
-    const struct lm_flash_part *parts; /* LM_IMAGES_MAX; the first of no bytes ends them. None: the
-                                        * flash has one image, at its start */
+    const struct lm_flash_part *parts; /* LM_IMAGES_MAX; of no bytes: no image there. Without the
+                                        * first the flash has one image, at its start */
 };
 
 /* Open the image: choose the radar, read tables, coarsest LOD, targets and signatures. Waits for

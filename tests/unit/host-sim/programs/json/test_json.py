@@ -589,6 +589,12 @@ def sim():
     assert near(100 * tiles["hits"] / (tiles["hits"] + tiles["misses"]), hits, 0.01)
     assert list(r["faults"].values()) == find(r"^faults: (\d+) flash reads failed, (\d+) records corrupt, (\d+) requests dropped, (\d+) d", text)
     assert r["map_is_usable"] is True and r["targets"]["held"] == 1 and r["pictures_written"] == 1
+    first = r["images"][0]
+    assert len(r["images"]) == 1 and [first["place"], first["path"], first["state"]] == [1, here("image.lmdb"), "flown"]
+    assert first["title"] and 0 < first["cell_m"] < 100
+    several, _ = run("sim", "--db", here("image.lmdb"), "--db2", here("flight.log"), "--db4", here("image.lmdb"), "--seconds", "0.1")
+    assert [(i["place"], i["state"], i["title"], i["cell_m"]) for i in several["report"]["images"]] == \
+        [(1, "flown", first["title"], first["cell_m"]), (2, "not usable", None, None), (4, "flown", first["title"], first["cell_m"])]
     files_of(document, here("glass"))
 
 
