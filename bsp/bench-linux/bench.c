@@ -178,6 +178,54 @@ int bench_open(struct bench *b, const struct bench_scene *scene, const struct be
     return 0;
 }
 
+void bench_settle(struct bench *b)
+{
+    for (uint32_t i = 1; i < LM_IMAGES_MAX; i++) {
+        if (b->is_leaving[i] && lm_tile_cache_is_drained(&b->unit->map.tiles)) {
+            (void)drv_flash_joined_put(&b->joined, i, NULL);
+            drv_flash_file_close(&b->flash[i]);
+            memset(&b->flash[i], 0, sizeof b->flash[i]);
+            b->is_leaving[i] = false;
+        }
+    }
+}
+
+static int open_late(struct bench *b, uint32_t place, const char *path, struct lm_image_change *to)
+{
+    if (has_file(b, place)) {
+        snprintf(b->error, sizeof b->error, "an image is at place %u; unmount it first", place + 1);
+        return -1;
+    }
+    if (open_file(b, place, path) != 0) {
+        return -1;
+    }
+    const struct lm_flash_part part =
+        drv_flash_joined_put(&b->joined, place, &b->flash[place].port);
+    to->bytes = part.bytes;
+    to->crc = record_image_crc(&b->joined.port, &part, b->board.flash_poll_limit);
+    if (part.bytes == 0) {
+        snprintf(b->error, sizeof b->error, "%s: is empty", path);
+        b->is_leaving[place] = true;
+    }
+    return part.bytes == 0 ? -1 : 0;
+}
+
+int bench_mount(struct bench *b, int32_t place, const char *path, struct lm_control *control)
+{
+    const uint32_t at = (uint32_t)place - 1;
+    bench_settle(b);
+    *control = (struct lm_control){.kind = LM_CONTROL_IMAGE, .image = {.place = place}};
+    if (path) {
+        return open_late(b, at, path, &control->image);
+    }
+    if (!has_file(b, at)) {
+        snprintf(b->error, sizeof b->error, "no image is at place %d", (int)place);
+        return -1;
+    }
+    b->is_leaving[at] = true;
+    return 0;
+}
+
 void bench_close(struct bench *b)
 {
     close_files(b);

@@ -15,6 +15,7 @@ enum { BENCH_TILE_SLOTS = 384, BENCH_BUFFERS = 2 };
 struct bench {
     struct drv_flash_file flash[LM_IMAGES_MAX]; /* without a file: all zero */
     struct drv_flash_joined joined;
+    bool is_leaving[LM_IMAGES_MAX]; /* closed when nothing is read from it any more */
     struct lm_display display;
     uint32_t *buffer[BENCH_BUFFERS]; /* owned: width_px * height_px each, 0x00RRGGBB */
     uint32_t *glass;                 /* the one of the last frame presented */
@@ -64,6 +65,14 @@ struct bench_glass {
 int bench_open(struct bench *b, const struct bench_scene *scene, const struct bench_glass *glass,
                uint32_t noise_seed, const struct bench_bus *bus,
                const struct lm_controls *controls);
+
+/* Open the image `path` at a place, 2..LM_IMAGES_MAX, where none is, or take out the one that is
+ * there (NULL), and fill the control that tells the unit. Returns 0; or -1, with the cause in
+ * b->error and nothing changed. */
+int bench_mount(struct bench *b, int32_t place, const char *path, struct lm_control *control);
+
+/* Close the files of images that have gone. Call behind each step. */
+void bench_settle(struct bench *b);
 
 /* Free the unit and close the database. */
 void bench_close(struct bench *b);

@@ -73,6 +73,16 @@ static void patch(struct bytes *b, struct lm_sar_command *s)
     NUMBER(b, s->height_m_q6);
 }
 
+static void image(struct bytes *b, struct lm_image_change *i)
+{
+    uint32_t low = (uint32_t)i->bytes, high = (uint32_t)(i->bytes >> 32);
+    NUMBER(b, i->place);
+    number(b, &i->crc);
+    number(b, &low);
+    number(b, &high);
+    i->bytes = (uint64_t)high << 32 | low;
+}
+
 static void member_of(struct bytes *b, struct lm_control *c)
 {
     switch (c->kind) {
@@ -122,6 +132,9 @@ static void member_of(struct bytes *b, struct lm_control *c)
         NUMBER(b, c->slots.cut_off);
         NUMBER(b, c->slots.load);
         NUMBER(b, c->slots.percent);
+        break;
+    case LM_CONTROL_IMAGE:
+        image(b, &c->image);
         break;
     case LM_CONTROL_DESIGNATE:
     case LM_CONTROL_DROP:

@@ -436,6 +436,17 @@ static int send_frame(void *ctx, const struct lm_can_frame *frame)
 
 /* ---- controls ---- */
 
+/* Whether an image that comes is the one that came. */
+static bool is_at_hand(const struct replay *p, const struct lm_image_change *change)
+{
+    const uint32_t place = (uint32_t)change->place - 1;
+    if (change->bytes == 0 || place >= LM_IMAGES_MAX) {
+        return true;
+    }
+    const struct lm_flash_part part = {p->board->images[place].offset, change->bytes};
+    return record_image_crc(p->image, &part, p->head.flash_poll_limit) == change->crc;
+}
+
 static int next_control(void *ctx, struct lm_control *control)
 {
     struct replay *p = ctx;
@@ -446,6 +457,9 @@ static int next_control(void *ctx, struct lm_control *control)
     take(p);
     if (!is_sound) {
         stop(p, "no control");
+    } else if (control->kind == LM_CONTROL_IMAGE && !is_at_hand(p, &control->image)) {
+        stop(p, "an image comes here that is not at hand: name the same file at its place");
+        return 0;
     }
     return is_sound;
 }

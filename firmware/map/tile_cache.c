@@ -123,9 +123,7 @@ static bool find_entry(const struct lm_tile_cache *c, uint32_t first, uint8_t lo
 {
     for (uint32_t i = first; i < LM_IMAGES_MAX && i < c->image_count; i++) {
         const struct lm_db *image = &c->images[i];
-        const int64_t entry = (c->mounted >> i & 1) != 0
-                                  ? lm_db_entry(image, lod_in(c, image, lod), row, column)
-                                  : -1;
+        const int64_t entry = lm_db_entry(image, lod_in(c, image, lod), row, column);
         if (entry >= 0) {
             *key = (struct lm_tile_key){row, column, (uint32_t)entry, lod, (uint8_t)i};
             return true;
@@ -600,7 +598,6 @@ static void init(struct lm_tile_cache *c, const struct lm_db *db, const struct l
     c->db = db;
     c->images = images;
     c->image_count = image_count;
-    c->mounted = (1u << image_count) - 1;
     c->reading_slot = LM_SLOT_NONE;
     for (uint32_t i = 0; i <= LM_TILE_SLOTS_MAX; i++) {
         c->slots[i].resident = LM_TILE_NO_NAME;
@@ -636,18 +633,23 @@ int lm_tile_cache_init_over(struct lm_tile_cache *c, const struct lm_db *db,
                             size_t pool_bytes, uint32_t poll_limit)
 {
     init(c, db, images, image_count);
+    c->has_spare = true;
     return open_pool(c, pool,
                      pool_bytes < sizeof(struct lm_tile) ? 0 : pool_bytes - sizeof(struct lm_tile),
                      poll_limit);
 }
 
-void lm_tile_cache_mount(struct lm_tile_cache *c, uint32_t image_count, uint32_t mounted)
+void lm_tile_cache_mount(struct lm_tile_cache *c, const struct lm_db *images, uint32_t image_count)
 {
+    c->images = images;
     c->image_count = image_count;
-    c->mounted = mounted;
+    if (has_several(c) && !c->has_spare) {
+        c->has_spare = true;
+        c->slot_count--;
+    }
     c->is_top_resident = false;
     c->wanted_tail = c->wanted_head;
-    for (uint32_t i = 0; i < c->slot_count; i++) {
+    for (uint32_t i = 0; i < LM_TILE_SLOTS_MAX; i++) {
         if (c->slots[i].state != LM_SLOT_FREE && i != c->reading_slot) {
             unlink_slot(c, (uint16_t)i);
             c->slots[i] = (struct lm_tile_slot){.resident = LM_TILE_NO_NAME};

@@ -68,6 +68,13 @@ void lm_sector_start(struct lm_sector *s, const struct lm_radar *radar,
     lm_sector_floor_clear(&s->floor);
 }
 
+void lm_sector_begin_again(struct lm_sector *s)
+{
+    s->is_begun = s->has_taps = s->has_foreground = false;
+    s->line = s->is_leftward && s->lines > 0 ? s->lines - 1 : 0;
+    lm_beam_clear(&s->beam);
+}
+
 uint32_t lm_sector_line_us(const struct lm_sector *s)
 {
     return (uint32_t)((uint64_t)s->width * 1000000 / rate_of(s));

@@ -222,6 +222,32 @@ int lm_unit_tell_slots(struct lm_unit *u, const struct lm_slots_state *s)
     return LM_OK;
 }
 
+/* What is drawn goes on over the new map; a patch half drawn begins anew, or gives way to the
+ * sector. */
+static void draw_on(struct lm_unit *u, uint32_t shift_was, uint64_t now_us)
+{
+    const struct lm_sar_command command = u->picture.sar.command;
+    if (lm_picture_change_map(&u->picture, shift_was) &&
+        try_patch(u, &command, now_us) != LM_REFUSED_NOT) {
+        lm_apply_effects(u, LM_EFFECT_SECTOR, now_us);
+    }
+}
+
+static enum lm_refusal change_image(struct lm_unit *u, const struct lm_image_change *change,
+                                    uint64_t now_us)
+{
+    const uint32_t place = (uint32_t)change->place - 1, shift_was = u->map.db.shift0;
+    if (place == 0 || place >= LM_IMAGES_MAX) {
+        return LM_REFUSED_VALUE;
+    }
+    const struct lm_flash_part part = {u->board->images[place].offset, change->bytes};
+    if (lm_unit_map_mount(&u->map, place, &part, u->board->flash_poll_limit) != LM_OK) {
+        return LM_REFUSED_MAP;
+    }
+    draw_on(u, shift_was, now_us);
+    return LM_REFUSED_NOT;
+}
+
 static enum lm_refusal apply_control(struct lm_unit *u, const struct lm_control *control,
                                      uint64_t now_us)
 {
@@ -265,6 +291,8 @@ static enum lm_refusal apply_control(struct lm_unit *u, const struct lm_control 
         return designate(u, now_us);
     case LM_CONTROL_SLOTS:
         return refused_unless(lm_unit_tell_slots(u, &control->slots) == LM_OK);
+    case LM_CONTROL_IMAGE:
+        return change_image(u, &control->image, now_us);
     }
     return LM_REFUSED_VALUE;
 }

@@ -127,6 +127,23 @@ bool lm_picture_draw_line(struct lm_picture *p, uint64_t now_us, uint32_t *azimu
     return true;
 }
 
+/* LOD of cells of one size in the new map, or the nearest that it has. */
+static uint8_t lod_now(const struct lm_picture *p, uint32_t shift_was, uint8_t lod)
+{
+    const struct lm_db *db = &p->lent.map->db;
+    return (uint8_t)fx_clamp_i32((int32_t)shift_was + lod - db->shift0, 0, db->lod_count - 1);
+}
+
+bool lm_picture_change_map(struct lm_picture *p, uint32_t shift_was)
+{
+    const struct lm_sar *sar = &p->sar;
+    p->sar.lod = lod_now(p, shift_was, p->sar.lod);
+    p->sar.foreground.lod = lod_now(p, shift_was, p->sar.foreground.lod);
+    p->coverage.coarsest_lod = lod_now(p, shift_was, p->coverage.coarsest_lod);
+    lm_sector_begin_again(&p->sector);
+    return !methods(p)->moves && sar->line < sar->lines;
+}
+
 bool lm_picture_moves(const struct lm_picture *p)
 {
     return methods(p)->moves;

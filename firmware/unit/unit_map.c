@@ -91,24 +91,30 @@ static int open_tables(struct lm_unit_map *m, const struct lm_unit_map_lent *len
     return status != LM_OK || m->db.sensor == m->radar->sensor ? status : LM_ERR_SENSOR;
 }
 
-/* Put the image that was opened last at its place: behind those whose cells are as fine. */
+static bool is_before(const struct lm_db *a, const struct lm_db *b)
+{
+    return a->shift0 < b->shift0 || (a->shift0 == b->shift0 && a->base < b->base);
+}
+
+/* Put the image that was opened last at its place: behind those whose cells are as fine and that
+ * lie before it in the flash. */
 static void sort_in(struct lm_unit_map *m)
 {
     uint32_t at = m->image_count++;
     struct lm_db *image = &m->images[LM_IMAGES_MAX];
     *image = m->images[at];
-    for (; at > 0 && m->images[at - 1].shift0 > image->shift0; at--) {
+    for (; at > 0 && is_before(image, &m->images[at - 1]); at--) {
         m->images[at] = m->images[at - 1];
     }
     m->images[at] = *image;
 }
 
 /* Open an image beside the first. */
-static int open_further(struct lm_unit_map *m, const struct lm_unit_map_lent *lent,
-                        const struct lm_flash_part *part)
+static int open_further(struct lm_unit_map *m, const struct lm_flash_part *part,
+                        uint32_t poll_limit)
 {
     struct lm_db *image = &m->images[m->image_count];
-    int status = lm_db_open_part(image, lent->flash, part, lent->flash_poll_limit);
+    int status = lm_db_open_part(image, m->db.flash, part, poll_limit);
     if (status == LM_OK) {
         status = lm_images_judge(&m->db, image);
     }
@@ -127,7 +133,7 @@ static void open_parts(struct lm_unit_map *m, const struct lm_unit_map_lent *len
             continue;
         }
         if (LM_IMAGES_MAX > 1 && m->image_count > 0) {
-            m->part_status[i] = open_further(m, lent, part);
+            m->part_status[i] = open_further(m, part, lent->flash_poll_limit);
             continue;
         }
         m->part_status[i] = m->open_status = open_tables(m, lent, part);
@@ -168,6 +174,55 @@ int lm_unit_map_open(struct lm_unit_map *m, const struct lm_unit_map_lent *lent)
     read_targets(m, lent->flash_poll_limit);
     read_signatures(m, lent->flash_poll_limit);
     return open_tiles(m, lent);
+}
+
+/* Number of the image that begins there, or image_count. */
+static uint32_t image_from(const struct lm_unit_map *m, uint64_t offset)
+{
+    uint32_t i = 0;
+    while (i < m->image_count && m->images[i].base != offset) {
+        i++;
+    }
+    return i;
+}
+
+static void take_out(struct lm_unit_map *m, uint64_t offset)
+{
+    uint32_t i = image_from(m, offset);
+    if (i < m->image_count) {
+        m->image_count--;
+    }
+    for (; i < m->image_count; i++) {
+        m->images[i] = m->images[i + 1];
+    }
+}
+
+/* No image answers, and what is being read of them ends. False if it does not. */
+static bool drain(struct lm_unit_map *m, uint32_t poll_limit)
+{
+    lm_tile_cache_mount(&m->tiles, m->images, 0);
+    for (uint32_t i = 0; i < poll_limit && !lm_tile_cache_is_drained(&m->tiles); i++) {
+        lm_tile_cache_service(&m->tiles, m->tiles.now_us, 1);
+    }
+    return lm_tile_cache_is_drained(&m->tiles);
+}
+
+int lm_unit_map_mount(struct lm_unit_map *m, uint32_t place, const struct lm_flash_part *part,
+                      uint32_t poll_limit)
+{
+    if (!m->is_usable || place == 0 || place >= LM_IMAGES_MAX || part->offset == m->db.base) {
+        return LM_ERR_RANGE;
+    }
+    const bool is_drained = drain(m, poll_limit);
+    take_out(m, part->offset);
+    m->part_status[place] = part->bytes == 0 ? LM_OK
+                            : is_drained     ? open_further(m, part, poll_limit)
+                                             : LM_ERR_IO;
+    m->db = m->images[image_from(m, m->db.base)];
+    lm_images_view(&m->db, m->images, m->image_count);
+    m->geoid = (struct lm_geoid_reader){.corrupt = m->geoid.corrupt};
+    lm_tile_cache_mount(&m->tiles, m->images, m->image_count);
+    return LM_OK;
 }
 
 uint32_t lm_unit_map_refused(const struct lm_unit_map *m)

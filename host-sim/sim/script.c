@@ -251,6 +251,20 @@ static bool parse_cursor(char **words, int count, struct lm_control *c)
     return count == 4 && place(words + 2, &c->cursor);
 }
 
+/* "mount PLACE FILE" or "unmount PLACE". */
+static bool parse_mount(char **words, int count, struct script_event *e)
+{
+    double place;
+    const bool comes = strcmp(words[1], "mount") == 0;
+    if (count != 3 + comes || !hs_number_within(words[2], 2, LM_IMAGES_MAX, &place) ||
+        place != floor(place)) {
+        return false;
+    }
+    e->control.kind = LM_CONTROL_IMAGE;
+    e->control.image.place = (int32_t)place;
+    return !comes || (size_t)snprintf(e->image, sizeof e->image, "%s", words[3]) < sizeof e->image;
+}
+
 /* Commands of one word. */
 static bool parse_plain(const char *word, struct lm_control *c)
 {
@@ -444,6 +458,9 @@ static bool parse_line(struct script *s, char **words, int count, struct line_ev
     if (strcmp(words[1], "slew") == 0 || strcmp(words[1], "knob") == 0) {
         return parse_deflection(words, count, line);
     }
+    if (strcmp(words[1], "mount") == 0 || strcmp(words[1], "unmount") == 0) {
+        return parse_mount(words, count, e);
+    }
     if (strcmp(words[1], "steer") == 0) {
         return parse_steer(words, count, &e->control);
     }
@@ -492,9 +509,9 @@ static int append(struct script *s, const char *place, int line_number,
 static void find_reason(const struct script *s, char **words, int count, char text[REFUSAL_BYTES])
 {
     static const char *const commands[] = {
-        "range", "azimuth", "gain",      "freeze",   "sar",   "sarfrom", "steer",
-        "rain",  "jam",     "weather",   "seastate", "osb",   "rocker",  "knob",
-        "slew",  "cursor",  "designate", "drop",     "track", "ranging", "picture"};
+        "range",     "azimuth", "gain",     "freeze",  "sar",     "sarfrom", "steer",  "rain",
+        "jam",       "weather", "seastate", "osb",     "rocker",  "knob",    "slew",   "cursor",
+        "designate", "drop",    "track",    "ranging", "picture", "mount",   "unmount"};
     int32_t which;
     double seconds;
     const size_t size = REFUSAL_BYTES;
@@ -546,14 +563,26 @@ static int by_time(const void *a, const void *b)
     return x->order < y->order ? -1 : 1;
 }
 
+/* The file is opened when its time has come. */
+static bool hand_out(const struct script *s, const struct script_event *e,
+                     struct lm_control *control)
+{
+    *control = e->control;
+    return e->control.kind != LM_CONTROL_IMAGE ||
+           (s->images.open && s->images.open(s->images.ctx, e->control.image.place,
+                                             e->image[0] ? e->image : NULL, control));
+}
+
 static int next_control(void *ctx, struct lm_control *control)
 {
     struct script *s = ctx;
-    if (s->next < s->count && !s->events[s->next].is_picture &&
-        s->events[s->next].time_us <= s->now_us) {
-        s->line_taken = s->events[s->next].line;
-        *control = s->events[s->next++].control;
-        return 1;
+    while (s->next < s->count && !s->events[s->next].is_picture &&
+           s->events[s->next].time_us <= s->now_us) {
+        const struct script_event *e = &s->events[s->next++];
+        s->line_taken = e->line;
+        if (hand_out(s, e, control)) {
+            return 1;
+        }
     }
     return 0;
 }

@@ -84,7 +84,7 @@ void prove_kind(void)
     ASSUME(is_heard_sound(&heard));
     const enum lm_control_kind kind = kind_of(&heard);
     PROVE((uint32_t)kind < LM_CONTROL_KINDS && kind != LM_CONTROL_ENVIRONMENT &&
-          kind != LM_CONTROL_SLOTS);
+          kind != LM_CONTROL_SLOTS && kind != LM_CONTROL_IMAGE);
     PROVE(kinds[kind].first == heard.first);
     PROVE(heard.first != LM_CONTROL_ITEM_SWITCH || kinds[kind].act == heard.word[0] ||
           (kind == LM_CONTROL_FREEZE && heard.word[0] == LM_CONTROL_SWITCH_RELEASE));

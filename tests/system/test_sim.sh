@@ -54,6 +54,10 @@ pictures() {
     find "$work/$1" -name '*.png' | wc -l
 }
 
+differ_patch() {
+    ! cmp -s "$work/$1/patch.png" "$work/$2/patch.png"
+}
+
 size_is() {
     [ "$("$tool" size "$1")" = "$2" ]
 }
@@ -326,7 +330,7 @@ check 'under another table of the second it is refused' exits 1 "$sim" --db "$db
 # Two images in one recording
 "$tool" range "$work/range.lmdb" || exit 1
 "$tool" other-range "$work/other-range.lmdb" || exit 1
-printf '0 range 10\n0.5 sar 46 11 5\n' >"$work/range.script"
+printf '0 range 10\n0.5 sar 46.02 11.03 5\n' >"$work/range.script"
 check 'a flight over two images is recorded' exits 0 "$sim" --db "$db" --db2 "$work/range.lmdb" --bus "$log" \
     --script "$work/range.script" --seconds 3 --png "$work/beside" --every 10 --record "$work/beside.log"
 check 'and shown again' exits 0 "$sim" --db "$db" --db2 "$work/range.lmdb" --replay "$work/beside.log" \
@@ -342,6 +346,52 @@ check 'at another place it is refused as well' exits 1 "$sim" --db "$db" --db3 "
 check 'unless told' exits 0 "$sim" --db "$db" --db2 "$work/other-range.lmdb" --replay "$work/beside.log" --replay-anyway
 check 'an image that the recording lacks is not shown' exits 0 "$sim" --db "$db" --db2 "$work/range.lmdb" \
     --replay "$work/rec.log"
+
+# An image comes and goes in flight: a patch drawn behind it is that of a start with it, or without
+patch="1.5 sar 46.02 11.03 5\n3.9 picture patch\n"
+printf '%b' "0 range 10\n$patch" >"$work/start.script"
+printf '%b' "0 range 10\n0.7 mount 2 $work/range.lmdb\n$patch" >"$work/mount.script"
+printf '%b' "0 range 10\n0.7 unmount 2\n$patch" >"$work/unmount.script"
+fixed="1.5 sarfrom 46.02 11.03 5 45 9000 2000"
+printf '%b' "0 range 10\n$fixed\n3.9 picture patch\n" >"$work/fixed.script"
+# one that is refused, one that is not there, a place that is taken, one that is free; then the half drawn patch begins again
+printf '%b' "0 range 10\n0.2 mount 3 $log\n0.3 mount 4 $work/nosuch\n0.4 unmount 3\n0.5 mount 3 $work/range.lmdb
+0.6 mount 3 $work/other-range.lmdb\n0.7 unmount 2\n$fixed\n1.6 unmount 3\n1.6 mount 3 $work/other-range.lmdb
+3.9 picture patch\n" >"$work/changes.script"
+fly_images() { # NAME SCRIPT OPTIONS...
+    name=$1
+    script=$work/$2.script
+    shift 2
+    fly "$name" --every 0 --record "$work/$name.log" "$@"
+}
+same_patch() {
+    cmp "$work/$1/patch.png" "$work/$2/patch.png"
+}
+check 'a flight without the second image' fly_images alone start
+check 'and with it from the start' fly_images two-images start --db2 "$work/range.lmdb"
+check 'show different patches' differ_patch alone two-images
+check 'an image comes in flight' fly_images came mount
+check 'and the patch is that of the start with both' same_patch came two-images
+check 'it goes in flight' fly_images went unmount --db2 "$work/range.lmdb"
+check 'and the patch is that of the start with one' same_patch went alone
+check 'images come and go, and bad ones are refused' fly_images changes changes
+check 'the one that is no image' said 'flight.log: warning: is no usable flash image'
+check 'the one that is not there' said "line 3: warning: $work/nosuch: cannot be opened"
+check 'the one whose place is taken' said 'line 6: warning: an image is at place 3; unmount it first'
+check 'the one that nobody mounted' said 'line 7: warning: no image is at place 2'
+check 'no command was refused' test "$(number 'commands refused')" -eq 0
+check 'with the other one from the start' fly_images other fixed --db3 "$work/other-range.lmdb"
+# It is begun later; so the mark in the corner, which turns with each picture, may stand otherwise.
+check 'the patch that was half drawn is the same at last' between 0 30 \
+    "$("$tool" differ "$work/changes/patch.png" "$work/other/patch.png")"
+check 'the recording of it is shown again' exits 0 "$sim" --db "$db" --db2 "$work/range.lmdb" \
+    --replay "$work/came.log" --png "$work/came-again" --every 1
+check 'without a departure' grep -qE 'failed 0; departures 0$' "$out"
+check 'without the image it ends there' exits 1 "$sim" --db "$db" --replay "$work/came.log"
+check 'and says why' said 'an image comes here that is not at hand'
+printf '0 mount 1 x\n' >"$work/first.script"
+check 'the first image stays' exits 1 "$sim" --db "$db" --bus "$log" --script "$work/first.script"
+script=$work/flight.script
 
 # The window
 check 'without a screen the flight goes on' \

@@ -3,9 +3,10 @@
  *   test_sim_tool image FILE            a small image round 46 N 11 E, 5 MB
  *   test_sim_tool break-fine FILE       the same, each record below the coarsest level damaged
  *   test_sim_tool leave-fine-out FILE   the same without the two finest levels
- *   test_sim_tool range FILE            an image with cells half as long around the middle of it
+ *   test_sim_tool range FILE            an image with cells half as long around 46.02 N 11.03 E
  *   test_sim_tool other-range FILE      the same with other ground
  *   test_sim_tool pixels FILE.png RRGGBB    print how many pixels have that colour
+ *   test_sim_tool differ A.png B.png        print how many pixels are not the same
  *   test_sim_tool size FILE.png             print WIDTHxHEIGHT */
 #include "tiny_country.h"
 
@@ -53,6 +54,8 @@ static struct tiny_cell trees(void *ctx, const struct tiny_place *p)
 static int write_range(const char *path, double dice_m)
 {
     struct tiny_spec spec = tiny_country(8);
+    spec.latitude_deg += 0.02;
+    spec.longitude_deg += 0.03;
     spec.shift0--;
     spec.rows = spec.columns = 6;
     spec.level_count = 3;
@@ -67,16 +70,41 @@ static int write_range(const char *path, double dice_m)
     return status != 0;
 }
 
-static int look(const char *path, const char *colour)
+/* The pixels of a picture, red, green and blue; NULL with the cause told. */
+static uint8_t *read_png(png_image *png, const char *path)
 {
-    png_image png = {.version = PNG_IMAGE_VERSION};
-    if (!png_image_begin_read_from_file(&png, path)) {
-        fprintf(stderr, "%s: %s\n", path, png.message);
+    *png = (png_image){.version = PNG_IMAGE_VERSION};
+    if (!png_image_begin_read_from_file(png, path)) {
+        fprintf(stderr, "%s: %s\n", path, png->message);
+        return NULL;
+    }
+    png->format = PNG_FORMAT_RGB;
+    uint8_t *pixels = malloc(PNG_IMAGE_SIZE(*png));
+    return pixels && png_image_finish_read(png, NULL, pixels, 0, NULL) ? pixels : NULL;
+}
+
+static int differ(const char *first, const char *second)
+{
+    png_image a, b;
+    uint8_t *one = read_png(&a, first), *other = read_png(&b, second);
+    if (!one || !other || a.width != b.width || a.height != b.height) {
         return 1;
     }
-    png.format = PNG_FORMAT_RGB;
-    uint8_t *pixels = malloc(PNG_IMAGE_SIZE(png));
-    if (!pixels || !png_image_finish_read(&png, NULL, pixels, 0, NULL)) {
+    size_t count = 0;
+    for (size_t i = 0; i < (size_t)a.width * a.height; i++) {
+        count += memcmp(one + 3 * i, other + 3 * i, 3) != 0;
+    }
+    printf("%zu\n", count);
+    free(one);
+    free(other);
+    return 0;
+}
+
+static int look(const char *path, const char *colour)
+{
+    png_image png;
+    uint8_t *pixels = read_png(&png, path);
+    if (!pixels) {
         return 1;
     }
     const size_t count = (size_t)png.width * png.height;
@@ -110,6 +138,9 @@ int main(int argc, char **argv)
     }
     if (argc == 3 && strcmp(argv[1], "other-range") == 0) {
         return write_range(argv[2], 70);
+    }
+    if (argc == 4 && strcmp(argv[1], "differ") == 0) {
+        return differ(argv[2], argv[3]);
     }
     if (argc == 4 && strcmp(argv[1], "pixels") == 0) {
         return look(argv[2], argv[3]);

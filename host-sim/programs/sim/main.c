@@ -39,6 +39,7 @@ struct sim {
     struct script script;
     struct bench bench;
     struct images images;
+    uint32_t images_came; /* in this step, a bit for each place */
     FILE *log_file;
     struct drv_can_log log;
     FILE *log_file_2; /* of --bus2 */
@@ -250,6 +251,31 @@ static void wait_until(const struct timespec *start, uint64_t flight_us)
     }
 }
 
+/* An image of the script comes or goes. */
+static bool open_image(void *ctx, int32_t place, const char *path, struct lm_control *control)
+{
+    struct sim *s = ctx;
+    if (bench_mount(&s->bench, place, path, control) != 0) {
+        char line[sizeof s->script.path + 32];
+        snprintf(line, sizeof line, "%s line %d", s->script.path, s->script.line_taken);
+        hs_warn(line, "the flight goes on without it", "%s", s->bench.error);
+        return false;
+    }
+    s->images.path[place - 1] = path;
+    s->images_came |= path ? 1u << (place - 1) : 0;
+    return true;
+}
+
+static void settle_images(struct sim *s)
+{
+    bench_settle(&s->bench);
+    for (uint32_t i = 0; s->images_came != 0; i++, s->images_came >>= 1) {
+        if (s->images_came & 1) {
+            images_warn(&s->images, &s->bench.unit->map, i);
+        }
+    }
+}
+
 static int step(struct sim *s, uint64_t now_us)
 {
     const char *picture;
@@ -273,6 +299,7 @@ static int step(struct sim *s, uint64_t now_us)
         record_step(&s->recorder, now_us);
     }
     lm_unit_step(s->bench.unit, now_us);
+    settle_images(s);
     track_log_step(&s->tracks, &s->bench.unit->track, now_us);
     return s->bench.pictures != before ? serve_picture(s) : 0;
 }
@@ -791,6 +818,7 @@ static int run_flight(struct sim *s, const struct bench_bus *bus)
         open_bezel(s) != 0) {
         return -1;
     }
+    s->script.images = (struct script_images){s, open_image};
     int status = fly(s);
     if (status == 0 && o->bus_out) {
         status = hs_atomic_commit(&s->sent);

@@ -64,10 +64,11 @@ enum lm_control_kind {
     LM_CONTROL_TRACK,     /* target management switch right: track what is at the cursor */
     LM_CONTROL_RANGING,   /* range the ground straight ahead, or end that */
 
-    /* No act of anybody's: what the board says of its database. */
-    LM_CONTROL_SLOTS /* slots: replaces what it said before */
+    /* No act of anybody's: what the board says of its database and of images beside it. */
+    LM_CONTROL_SLOTS, /* slots: replaces what it said before */
+    LM_CONTROL_IMAGE  /* image: has come to its place in the flash, or goes */
 };
-enum { LM_CONTROL_KINDS = LM_CONTROL_SLOTS + 1 };
+enum { LM_CONTROL_KINDS = LM_CONTROL_IMAGE + 1 };
 
 /* How far a load of a database is. */
 enum lm_load { LM_LOAD_NONE, LM_LOAD_RUNS, LM_LOAD_DONE, LM_LOAD_FAILED, LM_LOADS };
@@ -79,6 +80,13 @@ struct lm_slots_state {
     int32_t cut_off; /* likewise: a load has not come to its end */
     int32_t load;    /* enum lm_load */
     int32_t percent; /* of a load that runs: 0..100 */
+};
+
+/* An image beside the database. */
+struct lm_image_change {
+    int32_t place;  /* 2..LM_IMAGES_MAX, as people count them; where no other is, if it comes */
+    uint32_t crc;   /* of a replay alone, which knows it by this */
+    uint64_t bytes; /* of its flash; 0: it goes */
 };
 
 /* One act of the operator. Only the member that belongs to `kind` means anything.
@@ -111,6 +119,7 @@ struct lm_control {
                              holds them until the next slew */
         } slew;
         struct lm_slots_state slots;
+        struct lm_image_change image;
     };
 };
 

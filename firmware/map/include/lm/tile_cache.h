@@ -107,9 +107,9 @@ struct lm_tile_cache {
     const struct lm_db *db; /* borrowed as long as the cache is in use; its LODs are the cache's */
     const struct lm_db *images; /* borrowed likewise: what is read, the finest first */
     uint32_t image_count;
-    uint32_t mounted;     /* bit n: image n answers */
     struct lm_tile *pool; /* borrowed as long, too: one record a slot */
     uint32_t slot_count;  /* of the pool; at most LM_TILE_SLOTS_MAX */
+    bool has_spare;       /* the pool has one tile more, for filling */
     bool is_top_resident; /* the coarsest LOD is, whole */
     uint32_t clock;       /* look-ups so far */
     uint64_t now_us;      /* of the last service */
@@ -257,10 +257,11 @@ bool lm_tile_cache_read(struct lm_tile_cache *c, struct lm_flash_request *reques
  * that is begun, and lm_tile_unpack_run for each part, which costs half a check. */
 void lm_tile_cache_service(struct lm_tile_cache *c, uint64_t now_us, uint32_t reads);
 
-/* The images of a cache of lm_tile_cache_init_over have changed, or its LODs: image_count of them,
- * of which those answer from now on that are bits of `mounted`. All tiles leave the cache, and
- * requests are forgotten. A coarsest LOD that was resident whole is no longer. */
-void lm_tile_cache_mount(struct lm_tile_cache *c, uint32_t image_count, uint32_t mounted);
+/* The images have changed, or the LODs of *db: these answer from now on; of none no tile is read.
+ * All tiles leave the cache, and requests are forgotten. A coarsest LOD that was resident whole is
+ * no longer. The last tile of the pool is kept for filling from the first time on that there are
+ * several. */
+void lm_tile_cache_mount(struct lm_tile_cache *c, const struct lm_db *images, uint32_t image_count);
 
 /* True if no read is under way that was begun before lm_tile_cache_mount. */
 bool lm_tile_cache_is_drained(const struct lm_tile_cache *c);

@@ -135,6 +135,9 @@ struct lm_sector {
     int32_t level_db_q8[LM_CELLS_ROOM]; /* line drawn last, behind the receiver */
 };
 
+/* Begin the sweep under way again, because the map has changed: nothing of it is kept. */
+void lm_sector_begin_again(struct lm_sector *s);
+
 /* Start a sector: forget sweep, samples and geometry, and take the command. `epoch` numbers the
  * first sweep's noise; the same epoch draws the same noise. Sets environment, targets and chips to
  * NULL; the caller sets them next. `radar` is borrowed as long as *s is used. */

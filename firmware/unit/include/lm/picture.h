@@ -124,6 +124,11 @@ bool lm_picture_draw_line(struct lm_picture *p, uint64_t now_us, uint32_t *azimu
  * where the antenna is. */
 void lm_picture_follow_view(struct lm_picture *p, bool is_standing);
 
+/* The map has other images than before, when its finest cells were of `shift_was`. A sweep begins
+ * again over what is drawn; a patch that is whole stays as it is. True for one that is not: it must
+ * be started again. */
+bool lm_picture_change_map(struct lm_picture *p, uint32_t shift_was);
+
 /* True if the picture is drawn around the aircraft, at the page's range scale, and moves with it.
  * Such a picture must be started again when the aircraft's position jumps. */
 bool lm_picture_moves(const struct lm_picture *p);

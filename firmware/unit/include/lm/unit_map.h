@@ -82,6 +82,17 @@ void lm_unit_map_look(struct lm_unit_map *m, struct lm_position place, uint32_t 
 /* Height of mean sea level above the ellipsoid at a place, metres * 64. */
 int32_t lm_unit_map_geoid_m_q6(const struct lm_unit_map *m, struct lm_position place);
 
+/* An image has come to a place of the board's, 1..LM_IMAGES_MAX - 1, in a part of the flash where
+ * none was; or the one that is there goes, for a part of no bytes. Waits for the flash: what is
+ * being read ends first. Tiles of all images leave the cache. part_status tells whether the image
+ * was opened; LM_ERR_IO also if a read before did not end. A board lets the flash of one that has
+ * gone go when lm_tile_cache_is_drained says so of `tiles`.
+ *
+ * Returns LM_OK; or LM_ERR_RANGE, with nothing changed, if the map is not usable, for another
+ * place, or if the image there is the one with the tables. */
+int lm_unit_map_mount(struct lm_unit_map *m, uint32_t place, const struct lm_flash_part *part,
+                      uint32_t poll_limit);
+
 /* Number of images that the board has and a usable map is without. */
 uint32_t lm_unit_map_refused(const struct lm_unit_map *m);
 

@@ -26,6 +26,8 @@
  *   SECONDS drop                              target management switch down
  *   SECONDS track                             the switch right: track what is at the cursor
  *   SECONDS ranging                           range the ground straight ahead, or end that
+ *   SECONDS mount 2|3|4 FILE                  an image comes to this place beside the database
+ *   SECONDS unmount 2|3|4                     the image at this place goes
  *   SECONDS picture NAME                      write NAME.png into the folder of --png
  *
  * Times do not fall from line to line; '#' begins a remark. A press or a slew that lasts ends by
@@ -44,7 +46,15 @@ struct script_event {
     int line;  /* of the script, from 1 */
     bool is_picture;
     char picture[64];
+    char image[256]; /* file of LM_CONTROL_IMAGE; empty: it goes */
     struct lm_control control;
+};
+
+/* Who opens and closes the images of a script. `open` fills the control of a file at a place, or of
+ * none (NULL); false if it cannot be told: the event is left out. */
+struct script_images {
+    void *ctx;
+    bool (*open)(void *ctx, int32_t place, const char *path, struct lm_control *control);
 };
 
 struct script {
@@ -58,7 +68,8 @@ struct script {
     int line_taken;   /* line of the control handed out last; 0: none */
     uint64_t last_us; /* of the line read last */
     uint64_t now_us;
-    struct lm_controls port; /* its ctx is this struct, which must not move */
+    struct lm_controls port;     /* its ctx is this struct, which must not move */
+    struct script_images images; /* set by the program; without `open` images are left out */
 };
 
 /* Read a script, or make an empty one when `path` is NULL, for a unit with this radar table, which

@@ -285,7 +285,7 @@ TEST(where_the_theatre_cannot_be_read_the_world_answers)
     broken_from = (uintptr_t)f->bytes;
     broken_to = broken_from + f->parts[0].bytes;
     f->both.flash.fetch = fetch_unless_broken;
-    lm_tile_cache_mount(&f->both.tiles, 2, 3);
+    lm_tile_cache_mount(&f->both.tiles, f->both.images, 2);
     check_world_alone(f);
     assert_true(f->both.tiles.count.io_errors > 0);
     close_fixture(f);
@@ -297,12 +297,12 @@ TEST(an_image_that_is_unmounted_is_not_read_and_has_no_tile_any_more)
     srand(4);
     for (uint32_t polls = 0; polls < 60; polls += 7) { /* in the middle of entry, record, filling */
         f->both.flash.busy_polls = 3;
-        lm_tile_cache_mount(&f->both.tiles, 2, 3);
+        lm_tile_cache_mount(&f->both.tiles, f->both.images, 2);
         (void)lm_scan_cell(&f->both.tiles, 0, place(300));
         for (uint32_t i = 0; i < polls; i++) {
             lm_tile_cache_service(&f->both.tiles, 0, 1);
         }
-        lm_tile_cache_mount(&f->both.tiles, 2, 2);
+        lm_tile_cache_mount(&f->both.tiles, f->both.images + 1, 1);
         for (uint32_t i = 0; i < 8 && !lm_tile_cache_is_drained(&f->both.tiles); i++) {
             lm_tile_cache_service(&f->both.tiles, 0, 1);
         }
