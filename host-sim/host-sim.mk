@@ -18,6 +18,7 @@ $(call host_library, realradar,    gis lib fixed firmware,                      
 $(call host_library, netem,        tracer gis lib fixed firmware,                       openblas fftw3)
 $(call host_library, nav,          lib,                                                 proj expat zlib libzip)
 $(call host_library, slots,        lib fixed firmware drivers)
+$(call host_library, wire,         lib fixed firmware,                                  libcrypto libusb-1.0 -lpthread)
 $(call host_library, bus,          lib fixed firmware drivers)
 $(call host_library, dis,          lib fixed firmware drivers,                          libpcap)
 $(call host_library, ios,          image lib fixed firmware drivers)
@@ -27,7 +28,7 @@ $(call host_library, sim,          nav lib fixed firmware,                      
 $(call host_library, tables,       lib fixed firmware.h)
 
 $(call host_program, db,        vectors visual build infrared terrain resample reflectivity classify radar trust bus image gis lib fixed firmware)
-$(call host_program, load,      slots trust lib fixed firmware drivers)
+$(call host_program, load,      wire slots trust lib fixed firmware drivers)
 $(call host_program, radar,     radar image lib fixed firmware)
 $(call host_program, target,    tracer visual gis lib fixed firmware)
 $(call host_program, netem,     netem tracer realradar gis lib fixed firmware)

@@ -8,6 +8,14 @@
 #include <stdlib.h>
 
 static const char *program_name = "landmass";
+static hs_error_listener *error_listener;
+static void *error_listener_ctx;
+
+void hs_error_listen(hs_error_listener *listener, void *ctx)
+{
+    error_listener = listener;
+    error_listener_ctx = ctx;
+}
 
 void hs_set_program(const char *name)
 {
@@ -31,6 +39,9 @@ static void report(const char *place, bool is_error, const char *remedy, const c
     fflush(stdout);
     fprintf(stderr, "%s: %s: %s%s%s%s\n", program_name, place, is_error ? "" : "warning: ", said,
             remedy ? "; " : "", remedy ? remedy : "");
+    if (is_error && error_listener) {
+        error_listener(error_listener_ctx, place, said, remedy);
+    }
     hs_report_message(is_error ? "error" : "warning", place, said, remedy);
     free(text);
 }

@@ -22,6 +22,7 @@ SEED = int(os.environ.get("LANDMASS_SEED", "1"))
 MIB = 1 << 20
 DISKS = {name: os.path.abspath(os.path.join(WORK, name + ".img")) for name in ("disk-a", "disk-b", "files", "stick", "killed")}
 CHIP = "id_bytes=0x20,0xa2,0x00,0x15 parts=128,128"  # NAND of 64 MiB, of which /dev/mtd0 and mtd1 have 16 MiB each
+BIG, PLAIN = -1, 9  # numbers of databases: one of a megabyte, and one that nobody has signed
 CLASSES = "host-sim/programs/db/classes/heaton6.classes"
 
 
@@ -68,9 +69,11 @@ def boot():
         blank(name, 8 * MIB)
     blank("files", 64 * MIB)
     run("/sbin/mke2fs", "-q", "-t", "ext4", DISKS["files"])
-    images = [image(number) for number in range(3)]
+    images = [image(number) for number in (0, 1, 2, BIG)]
+    plain = os.path.join(WORK, "load%d.lmdb" % PLAIN)
+    run("cp", images[0] + ".plain", plain)
     stick(images[1])
-    top = tree(files=[*images, public_key(), log("still")], arch="amd64")
+    top = tree(files=[*images, plain, public_key(), log("still")], arch="amd64")
     devices = ["-device", "virtio-gpu-pci,xres=640,yres=480", "-device", "qemu-xhci,id=xhci"]
     for name in ("disk-a", "disk-b", "files"):
         devices += drive(name)
@@ -163,6 +166,55 @@ def usb(m):
     m.qmp("device_del", id="stick0")
     m.until("[ ! -b /dev/sda ]")
     m.do("umount /slots")
+
+
+GADGET = "/usr/lib/landmass-panel/usb-gadget"
+PLUGGED = "grep -qsx 0001 /sys/bus/usb/devices/*/idProduct"
+
+
+def send(m, number, code=0):
+    """What the PC's program says of a database that it sends."""
+    done, said = m.sh("landmass-load send /t/load%d.lmdb --json /tmp/send.json 2>&1" % number)
+    expect(done == code, done, said)
+    return said, json.loads(m.do("cat /tmp/send.json"))["report"]
+
+
+def plug(m):
+    m.do(GADGET + " connect")
+    m.until(PLUGGED)
+
+
+def pull_while_sending(m, number, how):
+    """Begin to send, and let that happen when the slot is being written."""
+    m.do("rm -f /slots/b*; landmass-load send /t/load%d.lmdb >/tmp/sent 2>&1 & pid=$!; "
+         "until [ -e /slots/b.state ]; do [ -d /proc/$pid ] || break; done; usleep 10000; %s; wait $pid; true" % (number, how))
+    return m.do("cat /tmp/sent")
+
+
+@case("a PC sends databases over USB, by libusb and FunctionFS; a cable that is pulled and a program that is killed cost no byte")
+def over_usb(m):
+    m.do("modprobe -a dummy_hcd libcomposite usb_f_fs; mkdir -p /slots; rm -rf /slots/*; %s make" % GADGET)
+    configure(m, "/slots/a", "/slots/b")
+    m.do("landmass-load receive --config /tmp/load.conf >/tmp/received 2>&1 & echo $! >/tmp/receiver")
+    plug(m)
+    said, report = send(m, 0)
+    expect("slot A: load 1;" in said and report["sent_bytes"] > report["image_bytes"], said)
+    said, report = send(m, 0)
+    expect(report["is_there_already"] and "slot A: whole, load 1, flown next; slot B: absent" in said, said)
+    said, _ = send(m, PLAIN, code=1)
+    expect("the panel: USB: is not signed;" in said and show(m)[1]["state"] == "absent", said)
+    for how, again in (("echo '' >/sys/kernel/config/usb_gadget/landmass/UDC", lambda: plug(m)), ("kill -9 $pid", lambda: None)):
+        said = pull_while_sending(m, BIG, how)
+        slots = show(m)
+        expect([s["state"] for s in slots] == ["whole", "cut off"] and slots[0]["is_flown_next"], slots, said)
+        again()
+        said, report = send(m, BIG)
+        expect(0 < report["same_bytes"] < report["image_bytes"] and "slot B: load 2;" in said, said)
+        slots = show(m, "verify")
+        expect([s["state"] for s in slots] == ["whole", "whole"] and slots[1]["is_flown_next"], slots)
+        m.do("cmp /slots/b /t/load%d.lmdb" % BIG)
+    m.do("kill $(cat /tmp/receiver); while [ -d /proc/$(cat /tmp/receiver) ]; do usleep 10000; done; %s remove; "
+         "rm -rf /slots/*; [ ! -e /sys/kernel/config/usb_gadget/landmass ]" % GADGET, 60)
 
 
 def kill(m):

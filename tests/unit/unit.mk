@@ -63,6 +63,7 @@ $(call unit_tests, host-sim/netem,              netem tracer lib fixed firmware)
 $(call unit_tests, host-sim/nav,                nav lib fixed firmware drivers,       nav)
 $(call unit_tests, host-sim/bus,                bus lib fixed firmware drivers)
 $(call unit_tests, host-sim/slots,              slots lib fixed firmware drivers)
+$(call unit_tests, host-sim/wire,               wire lib fixed firmware)
 $(call unit_tests, host-sim/dis,                dis lib fixed firmware drivers,       dis,      proj)
 $(call unit_tests, host-sim/ios,                ios image lib fixed firmware drivers)
 $(call unit_tests, host-sim/scene,              scene lib)
@@ -129,6 +130,7 @@ $(eval $(call unit_script,host-sim/programs/dis/test_dis.py))
 $(eval $(call unit_script,host-sim/programs/json/test_json.py))
 $(eval $(call unit_script,host-sim/slots/test_kills.py))
 $(eval $(call unit_script,host-sim/slots/test_plants.sh))
+$(eval $(call unit_script,host-sim/wire/test_send.py))
 $(eval $(call unit_script,host-sim/programs/nav/test_nav_live.py))
 $(eval $(call unit_script,host-sim/programs/progress/test_progress.py))
 $(UNIT)/bsp/panel-linux/test_package: $(PANEL) $(O)/bin/landmass-load $(wildcard bsp/panel-linux/debian/*)
@@ -137,6 +139,7 @@ $(UNIT)/host-sim/package/test_sbom: $(PANEL) $(O)/bin/landmass-load $(wildcard h
 $(UNIT)/host-sim/programs/dis/test_dis: | $(O)/bin/landmass-dis
 $(UNIT)/host-sim/programs/nav/test_nav_live: | $(O)/bin/landmass-nav
 $(UNIT)/host-sim/slots/test_kills: | $(addprefix $(O)/bin/landmass-,load db scene)
+$(UNIT)/host-sim/wire/test_send: | $(addprefix $(O)/bin/,landmass-load landmass-db tests/system/test_sim_tool)
 $(UNIT)/host-sim/slots/test_plants: | $(UNIT)/host-sim/slots/test_cuts
 $(UNIT)/host-sim/programs/json/test_json $(UNIT)/host-sim/programs/progress/test_progress: | $(HOST_TOOLS)
 $(UNIT)/host-sim/programs/bus/test_forms: | $(O)/bin/landmass-bus $(GEN)/bin/bus_table

@@ -21,6 +21,8 @@ load=$(dirname "$program")/landmass-load
 put 755 "$load" usr/bin/landmass-load
 "${STRIP:-strip}" "$root/usr/bin/landmass-load"
 put 644 "$here/landmass-load@.service" lib/systemd/system/landmass-load@.service
+put 644 "$here/landmass-load-usb.service" lib/systemd/system/landmass-load-usb.service
+put 755 "$here/usb-gadget" usr/lib/landmass-panel/usb-gadget
 put 644 "$here/landmass-load.udev" lib/udev/rules.d/90-landmass-load.rules
 put 644 "$here/../../../host-sim/package/completion.bash" usr/share/bash-completion/completions/landmass-load
 put 644 "$here/landmass-panel.service" lib/systemd/system/landmass-panel.service
@@ -41,7 +43,7 @@ rm "$root/options" "$root/options.man"
 man1=$root/usr/share/man/man1
 mkdir -p "$man1"
 $runner "$load" --help=man | gzip -9n >"$man1/landmass-load.1.gz"
-for command in put show verify; do
+for command in put receive send show verify; do
     $runner "$load" "$command" --help=man | gzip -9n >"$man1/landmass-load-$command.1.gz"
 done
 doc=$root/usr/share/doc/landmass-panel

@@ -29,6 +29,11 @@ int hs_warn(const char *place, const char *remedy, const char *cause, ...)
 int hs_doubt(bool is_trusted, const char *place, const char *remedy, const char *cause, ...)
     __attribute__((format(printf, 4, 5)));
 
+/* Tell errors, not warnings, to a listener as well: for a program that works for another one. NULL:
+ * to nobody any more. There is one for the process. */
+typedef void hs_error_listener(void *ctx, const char *place, const char *cause, const char *remedy);
+void hs_error_listen(hs_error_listener *listener, void *ctx);
+
 /* Name the program in the messages, and guard its inputs from here on (hs/input_file.h); call once
  * at the start of main. Keeps the pointer. */
 void hs_set_program(const char *name);

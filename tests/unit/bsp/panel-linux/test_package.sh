@@ -61,7 +61,9 @@ cmp "$package" "$again"
 result $? 'the same program makes the same package, byte for byte'
 dpkg-deb -x "$package" "$work/root" && dpkg-deb -e "$package" "$work/control"
 for file in usr/sbin/landmass-panel usr/bin/landmass-load lib/systemd/system/landmass-load@.service \
+    lib/systemd/system/landmass-load-usb.service usr/lib/landmass-panel/usb-gadget \
     lib/udev/rules.d/90-landmass-load.rules usr/share/man/man1/landmass-load-put.1.gz \
+    usr/share/man/man1/landmass-load-send.1.gz usr/share/man/man1/landmass-load-receive.1.gz \
     usr/share/bash-completion/completions/landmass-load lib/systemd/system/landmass-panel.service lib/udev/rules.d/60-landmass-panel.rules \
     usr/lib/sysctl.d/60-landmass-panel.conf usr/share/man/man8/landmass-panel.8.gz etc/landmass-panel.conf \
     usr/share/doc/landmass-panel/panel.md.gz usr/share/doc/landmass-panel/copyright; do
@@ -101,7 +103,10 @@ if command -v systemd-analyze >/dev/null; then
     sed "s|/usr/sbin/landmass-panel|$PWD/$panel|" "$work/root/lib/systemd/system/landmass-panel.service" >"$work/landmass-panel.service"
     sed "s|/usr/bin/landmass-load|$PWD/$build/bin/landmass-load|" "$work/root/lib/systemd/system/landmass-load@.service" \
         >"$work/landmass-load@.service"
-    systemd-analyze verify --man=no "$work/landmass-panel.service" "$work/landmass-load@sdb1.service" 2>&1 | sed 's/^/# /' |
+    sed -e "s|/usr/bin/landmass-load|$PWD/$build/bin/landmass-load|" -e "s|/usr/lib/landmass-panel|$PWD/$work/root&|" \
+        "$work/root/lib/systemd/system/landmass-load-usb.service" >"$work/landmass-load-usb.service"
+    systemd-analyze verify --man=no "$work/landmass-panel.service" "$work/landmass-load@sdb1.service" \
+        "$work/landmass-load-usb.service" 2>&1 | sed 's/^/# /' |
         grep landmass >"$work/said"
     [ ! -s "$work/said" ] || cat "$work/said"
     [ ! -s "$work/said" ]

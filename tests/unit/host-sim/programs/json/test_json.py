@@ -12,6 +12,7 @@ import re
 import shutil
 import subprocess
 import sys
+import time
 import traceback
 
 BUILD = os.environ.get("BUILD", "build/bench-linux")
@@ -804,6 +805,35 @@ def load_put():
     assert "nothing was written" in document["messages"][-1]["remedy"] and document["files"] == []
 
 
+def load_send():
+    """Both ends, over a socket; receive's report is looked at, too."""
+    path, conf = here("wire"), here("wire.conf")
+    with open(conf, "w", encoding="utf-8") as file:
+        file.write("slot.a = %s\nslot.b = %s\ndatabase.trust = any\ndatabase.serial = none\nslot.progress = none\n" %
+                   (here("wire-a"), here("wire-b")))
+    receiver = subprocess.Popen([os.path.join(BUILD, "bin/landmass-load"), "receive", "--once", "--socket", path, "--config",
+                                 conf, "--json", here("wire.json")], stdout=subprocess.PIPE, stderr=subprocess.DEVNULL)
+    deadline = time.monotonic() + 60
+    while not os.path.exists(path) and time.monotonic() < deadline:
+        time.sleep(0.01)
+    document, text = run("load", "send", here("image.lmdb"), "--socket", path)
+    printed = receiver.communicate(timeout=60)[0].decode()
+    r, size = document["report"], os.path.getsize(here("image.lmdb"))
+    assert find(r"^(\d+) bytes sent; the panel had (\d+) already$", text) == [r["sent_bytes"], r["same_bytes"]]
+    assert r["panel"] in text and (r["load"], r["image_bytes"], r["is_there_already"]) == (1, size, False)
+    with open(here("wire.json"), encoding="utf-8") as file:
+        (load,) = parse(file.read())["report"]["loads"]
+    assert find(r"^slot A: load (\d+), (\d+) bytes written, (\d+) were there;", printed) == \
+        [load["load"], load["written_bytes"], load["kept_bytes"]]
+    assert load["is_done"] is True and (load["sent_bytes"], load["image_bytes"]) == (r["sent_bytes"], size)
+
+
+def load_receive():
+    """The other end is looked at by load_send; here nobody has made its FunctionFS."""
+    document, _ = run("load", "receive", "--functionfs", here("nothing"), code=1)
+    assert "is no FunctionFS" in document["messages"][-1]["cause"]
+
+
 def slots_of(command):
     document, text = run("load", command, *SLOTS)
     a, b = document["report"]["slots"]
@@ -912,7 +942,7 @@ CHECKS = {"db import": db_import, "db train": db_train, "db segment": db_segment
           "db picture": db_picture, "scene": scene, "nav": nav, "dis": dis, "ios": ios, "bus decode": bus_decode, "bus fields": bus_fields,
           "bus table": bus_table, "bus dbc": bus_dbc, "bus filters": bus_filters, "bus reports": bus_reports,
           "bus controls": bus_controls, "sim": sim,
-          "load put": load_put, "load show": load_show, "load verify": load_verify,
+          "load put": load_put, "load send": load_send, "load receive": load_receive, "load show": load_show, "load verify": load_verify,
           "radar print": radar_print, "radar check": radar_check, "radar record": radar_record,
           "reference sar": reference("sar"), "reference gm": reference("gm"), "reference sector": reference("sector"),
           "figures figure1": figures("figure1"), "figures table1": figures("table1"), "tables fixed": tables("fixed"),
