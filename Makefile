@@ -29,7 +29,7 @@ $(call archive, $(LIB_support), $(wildcard tests/support/*.c))
 make_board = env $(patsubst %,-u %,MAKEFLAGS MAKEOVERRIDES CC OPT OPT_core LDFLAGS) $(MAKE) --no-print-directory -j2 BOARD=$(1)
 
 .PHONY: help deps all run check check-clang check-panel panel package bench gallery fuzz rooms lint format clean
-.PHONY: cuts deps-world reproduce web world zcu102 run-zcu102 size bench-zcu102 coverage figures prove
+.PHONY: cuts deps-world reproduce web world zcu102 run-zcu102 size bench-zcu102 cycles coverage figures prove
 
 help: ## Print this menu
 	@echo 'landmass: make TARGET'
@@ -113,6 +113,10 @@ size: zcu102 ## Print that board's memory map, its budgets, the deepest stack, a
 bench-zcu102: zcu102 ## Count the instructions of a flight there, by stage and mode: the same figures in each run
 	@$(MAKE) --no-print-directory $(PROGRAMS) $(ZCU102_TOOLS)
 	@sh bsp/zcu102/run.sh $(O) count
+
+cycles: zcu102 ## Estimate the cycles of that flight at 1.2 GHz by stage and loop, and what bounds each; a minute or two
+	@$(MAKE) --no-print-directory $(PROGRAMS) $(ZCU102_TOOLS)
+	@sh bsp/zcu102/run.sh $(O) cycles
 
 COUNTED := -fprofile-instr-generate
 coverage: deps ## Print the share of lines, branches and conditions of fixed and firmware that unit tests and golden pictures run

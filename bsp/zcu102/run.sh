@@ -1,6 +1,6 @@
 #!/bin/sh
 # Fly the built-in scene on the board in QEMU, as host-sim/run/run.sh flew it on the bench. Usage: run.sh BENCH-BUILD-DIR
-# [count]: compare the pictures and leave them in build/zcu102/run, or count the instructions.
+# [count|cycles]: compare the pictures and leave them in build/zcu102/run, count the instructions, or estimate the cycles.
 set -eu
 run=build/run
 out=build/zcu102/run
@@ -10,7 +10,7 @@ if ! [ -r $run/flight.log ] || ! "$1"/bin/landmass-db inspect $run/scene.lmdb > 
 fi
 flight="--db $run/scene.lmdb --bus $run/flight.log --seconds 53"
 export BUILD="$1"
-if [ "${2:-}" = count ]; then
+if [ "${2:-}" = count ] || [ "${2:-}" = cycles ]; then
     # Every mode, a track, and the patch of the town as make run has it, finer than the map; and one that is not.
     mkdir -p build/zcu102/bench
     {
@@ -20,7 +20,13 @@ if [ "${2:-}" = count ]; then
         awk '$2 == "sar" { print 50.0, "cursor", $3, $4; print 50.4, "track"; exit }' $run/flight.script
     } >build/zcu102/bench/script
     # shellcheck disable=SC2086 # words
-    exec python3 -B tests/zcu102/bench.py $flight --script build/zcu102/bench/script --out build/zcu102/bench
+    case $2 in
+    count) exec python3 -B tests/zcu102/bench.py $flight --script build/zcu102/bench/script --out build/zcu102/bench ;;
+    cycles)
+        "$1"/bin/tests/zcu102/tile_order
+        exec python3 -B tests/zcu102/cycles/cycles.py $flight --script build/zcu102/bench/script --out build/zcu102/cycles
+        ;;
+    esac
 fi
 # shellcheck disable=SC2086
 python3 -B tests/zcu102/fly.py $flight --script $run/flight.script --out $out --compare

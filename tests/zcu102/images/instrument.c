@@ -25,6 +25,8 @@ static struct {
     uint32_t in_line; /* how many of the stages under way sample or draw a line */
 } state;
 
+uint32_t instrument_modes_set[INSTRUMENT_MODES];
+
 static uint32_t counter(void)
 {
     uint64_t value;
@@ -134,6 +136,7 @@ void instrument_start(void)
 void instrument_set_mode(uint32_t mode)
 {
     state.mode = mode < INSTRUMENT_MODES ? mode : INSTRUMENT_MODES - 1;
+    instrument_modes_set[state.mode]++;
 }
 
 uint64_t instrument_now(void)

@@ -24,6 +24,10 @@ struct instrument {
 extern const uint32_t instrument_stages;
 extern const char *const instrument_names[];
 
+/* How often each mode was set. Whoever watches the memory from outside sees the mode by the word
+ * that is written (tests/zcu102/cycles). */
+extern uint32_t instrument_modes_set[INSTRUMENT_MODES];
+
 /* Start counting; interrupts should be masked while something is measured. */
 void instrument_start(void);
 
