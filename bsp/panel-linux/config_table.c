@@ -16,7 +16,8 @@
 #define FURTHER(index, name)                                                                       \
     OPTION(CONFIG_PATH_TO, further[index], 0, ROOM(further[index]), "none", name, "PATH | none",   \
            "none",                                                                                 \
-           "A further image, a file. At each place the finest image that has data there answers.")
+           "A further image, a file, flown as long as it is there. The finest image that has "     \
+           "data at a place answers.")
 #define BUTTON_VALUES "none | designate | drop | 1..20 | gain+ | gain- | sym+ | ... | con-"
 #define STICK(number, initial)                                                                     \
     OPTION(CONFIG_BUTTON, stick_map.button[(number)-1], 0, 0, NULL, "stick.button." #number,       \

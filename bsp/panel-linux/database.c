@@ -19,12 +19,13 @@ static uint64_t monotonic_ms(void)
 static bool goes_on(void *ctx, uint64_t done_bytes, uint64_t all_bytes)
 {
     sigset_t pending;
-    (void)ctx;
+    const atomic_bool *is_over = ctx;
     (void)done_bytes;
     (void)all_bytes;
-    return sigpending(&pending) != 0 ||
-           (!sigismember(&pending, SIGTERM) && !sigismember(&pending, SIGINT) &&
-            !sigismember(&pending, SIGHUP));
+    return (is_over == NULL || !atomic_load(is_over)) &&
+           (sigpending(&pending) != 0 ||
+            (!sigismember(&pending, SIGTERM) && !sigismember(&pending, SIGINT) &&
+             !sigismember(&pending, SIGHUP)));
 }
 
 /* May an image of this serial number be flown after those that were? */
@@ -99,7 +100,8 @@ static struct database judge_unknown(const struct config *c, const struct trust_
     return (struct database){.is_flown = is_any, .is_unsigned = is_any};
 }
 
-struct database database_judge(const struct config *c, const struct lm_flash *flash, bool is_check)
+struct database database_judge(const struct config *c, const struct lm_flash *flash, bool is_check,
+                               const atomic_bool *is_over)
 {
     struct trust_reader reader;
     struct trust_keys keys = {0};
@@ -111,7 +113,7 @@ struct database database_judge(const struct config *c, const struct lm_flash *fl
         return (struct database){0};
     }
     const uint64_t start_ms = monotonic_ms();
-    switch (trust_verify(&reader, &keys, goes_on, NULL, &r)) {
+    switch (trust_verify(&reader, &keys, goes_on, (void *)is_over, &r)) {
     case TRUST_GOOD:
         return judge_good(c, &r, monotonic_ms() - start_ms, is_check);
     case TRUST_UNSIGNED:

@@ -2,6 +2,7 @@
 #ifndef PANEL_DATABASE_H
 #define PANEL_DATABASE_H
 
+#include <stdatomic.h>
 #include <stdbool.h>
 
 #include "config.h"
@@ -20,9 +21,10 @@ struct database {
  *   be read,
  * - it is signed, and its serial number is below one that was flown, unless database.older is
  * `fly`,
- * - a signal has come that stops the panel (pending, and blocked).
+ * - a signal has come that stops the panel (pending, and blocked), or *is_over is set, which may be
+ *   NULL.
  * What is no image at all is left to the firmware, which says so. */
 struct database database_judge(const struct config *config, const struct lm_flash *flash,
-                               bool is_check);
+                               bool is_check, const atomic_bool *is_over);
 
 #endif

@@ -162,6 +162,8 @@ void panel_step(struct panel *p, uint64_t now_us)
     glass_service(&p->glass, now_us);
     recording_step(&p->recording, now_us);
     lm_unit_step(p->unit, now_us);
+    p->flash.patience_us = 0;
+    further_settle(&p->further, p->unit);
     settings_file_keep(&p->settings, p->unit, now_us);
     faults_file_keep(&p->faults, &p->unit->faults, now_us);
     p->count.steps++;

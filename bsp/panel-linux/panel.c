@@ -20,6 +20,11 @@
 /* A read at the start may take this long before it is given up: 100 polls of 50 ms. */
 enum { START_PATIENCE_US = 50000, START_POLLS = 100 };
 
+/* An image that comes in flight has just been read once, so that its tables answer at once. If its
+ * medium hangs all the same, the loop waits with it until the watchdog bites: the flash's thread
+ * still writes where the read was to go. */
+enum { IMAGE_PATIENCE_US = 1000000000 };
+
 static uint64_t monotonic_us(void)
 {
     return (uint64_t)hs_clock_us(CLOCK_MONOTONIC);
@@ -36,7 +41,7 @@ static const struct lm_flash *open_flash(struct panel *p)
     if (slow == NULL) {
         return &drv_no_flash;
     }
-    slow = storage_join(&p->storage, p->config, false, slow, p->images, &p->database);
+    slow = further_join(&p->further, p->config, slow, p->images, &p->database);
     const int cause = drv_flash_reader_start(&p->flash, slow);
     if (cause != 0) {
         report(REPORT_ERROR, "flash: no thread to read it: %s", strerror(cause));
@@ -49,29 +54,12 @@ static const struct lm_flash *open_flash(struct panel *p)
 static int next_control(void *ctx, struct lm_control *control)
 {
     struct panel *p = ctx;
+    if (further_next(&p->further, control)) {
+        p->flash.patience_us = IMAGE_PATIENCE_US;
+        return 1;
+    }
     return slots_told_next(&p->slots, control) || drv_control_ring_take(&p->bezel.ring, control) ||
            drv_control_ring_take(&p->hand.ring, control);
-}
-
-/* What the unit makes of the further images. */
-static void report_further(const struct panel *p)
-{
-    for (uint32_t i = 0; i < p->storage.further_count; i++) {
-        const char *const path = p->storage.further_path[i];
-        const int status = p->unit->map.part_status[i + 1];
-        if (status == LM_OK) {
-            report(REPORT_INFO, "%s: flown beside the database", path);
-        } else {
-            report(REPORT_ERROR, "%s: not shown: %s", path,
-                   status == LM_ERR_SENSOR  ? "its reflectivity is of another band than the "
-                                              "database's; build both for one radar"
-                   : status == LM_ERR_TABLE ? "its classes or its radar table are not the "
-                                              "database's; build both with one class table"
-                   : status == LM_ERR_VERSION
-                       ? "an image of another version; `landmass-db convert` renews old ones"
-                       : "not a database for this firmware; landmass-db verify tells why");
-        }
-    }
 }
 
 /* A database that cannot be used is no reason to stop: the glass shows DB FAIL. */
@@ -98,7 +86,7 @@ static void start_with_flash(struct panel *p, const struct lm_flash *flash)
         report(REPORT_ERROR, "%s: not a database for this firmware; landmass-db verify tells why",
                p->storage.path);
     }
-    report_further(p);
+    further_report(&p->further, p->unit);
 }
 
 /* The table that the configuration names. A panel that was told its radar shows no other's picture:
@@ -288,6 +276,7 @@ int panel_open(struct panel *p, const struct config *config)
         recording_start(&p->recording, p->board.restart);
         settings_file_start(&p->settings);
         faults_file_start(&p->faults, config->faults);
+        further_start(&p->further);
     }
     if (status != 0) {
         panel_close(p);
@@ -306,7 +295,9 @@ void panel_close(struct panel *p)
     glass_close(&p->glass);
     bus_close(&p->bus);
     bus_close(&p->bus_2);
+    further_stop(&p->further);
     drv_flash_reader_stop(&p->flash);
+    further_close(&p->further);
     storage_close(&p->storage);
     if (p->signals >= 0) {
         close(p->signals);

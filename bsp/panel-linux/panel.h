@@ -12,6 +12,7 @@
 #include "drv/flash_reader.h"
 #include "drv/watchdog.h"
 #include "faults_file.h"
+#include "further.h"
 #include "hand_controller.h"
 #include "lm/unit.h"
 #include "recording.h"
@@ -28,6 +29,7 @@ struct panel {
     const struct config *config; /* borrowed */
     uint64_t zero_us;            /* time of CLOCK_MONOTONIC at which the panel's clock is 0 */
     struct storage storage;
+    struct further further;
     struct lm_flash_part images[LM_IMAGES_MAX]; /* of the flash; none: it has one */
     struct slots_told slots;
     struct drv_flash_reader flash;

@@ -132,7 +132,7 @@ static struct database judge_slot(const struct storage *d, const struct config *
     const bool stands_in = has_damage(d->slots);
     snprintf(c.database, sizeof c.database, "%s", slot_path(config, slot));
     c.database_older = stands_in ? 1 : config->database_older;
-    return database_judge(&c, &d->slots[slot].port, is_check || stands_in);
+    return database_judge(&c, &d->slots[slot].port, is_check || stands_in, NULL);
 }
 
 /* The slot to fly, or -1. */
@@ -172,50 +172,9 @@ const struct lm_flash *storage_open(struct storage *d, const struct config *conf
     }
     const struct lm_flash *plain = open_plain(d, d->path);
     if (plain != NULL) {
-        *verdict = database_judge(config, plain, is_check);
+        *verdict = database_judge(config, plain, is_check, NULL);
     }
     return plain != NULL && verdict->is_flown ? plain : NULL;
-}
-
-/* Serial numbers are counted for the database alone: one file remembers one. */
-static bool open_further(struct storage *d, const struct config *config, const char *path,
-                         bool is_check, struct database *verdict)
-{
-    struct config c = *config;
-    struct drv_flash_file *file = &d->further[d->further_count];
-    const int cause = drv_flash_file_open(file, path);
-    if (cause != 0) {
-        report(REPORT_ERROR, "%s: %s; the others are flown without it", path, strerror(cause));
-        return false;
-    }
-    snprintf(c.database, sizeof c.database, "%s", path);
-    c.database_serial[0] = '\0';
-    const struct database judged = database_judge(&c, &file->port, is_check);
-    if (!judged.is_flown) {
-        drv_flash_file_close(file);
-        return false;
-    }
-    verdict->is_unsigned |= judged.is_unsigned;
-    d->further_path[d->further_count++] = path;
-    return true;
-}
-
-const struct lm_flash *storage_join(struct storage *d, const struct config *config, bool is_check,
-                                    const struct lm_flash *first, struct lm_flash_part *parts,
-                                    struct database *verdict)
-{
-    const struct lm_flash *flash[LM_IMAGES_MAX] = {first};
-    for (uint32_t i = 0; i < LM_IMAGES_MAX - 1; i++) {
-        if (config->further[i][0] != '\0' &&
-            open_further(d, config, config->further[i], is_check, verdict)) {
-            flash[d->further_count] = &d->further[d->further_count - 1].port;
-        }
-    }
-    if (d->further_count == 0) {
-        return first;
-    }
-    drv_flash_joined_open(&d->joined, flash, d->further_count + 1, parts);
-    return &d->joined.port;
 }
 
 struct lm_slots_state storage_state(const struct storage *d)
@@ -234,9 +193,6 @@ void storage_close(struct storage *d)
         slot_close(&d->slots[i]);
     }
     drv_flash_mtd_close(&d->mtd);
-    while (d->further_count > 0) {
-        drv_flash_file_close(&d->further[--d->further_count]);
-    }
     if (d->file.descriptor >= 0) {
         drv_flash_file_close(&d->file);
     }

@@ -80,6 +80,7 @@ static void image(struct bytes *b, struct lm_image_change *i)
     number(b, &i->crc);
     number(b, &low);
     number(b, &high);
+    NUMBER(b, i->is_unsigned);
     i->bytes = (uint64_t)high << 32 | low;
 }
 

@@ -244,6 +244,8 @@ static enum lm_refusal change_image(struct lm_unit *u, const struct lm_image_cha
     if (lm_unit_map_mount(&u->map, place, &part, u->board->flash_poll_limit) != LM_OK) {
         return LM_REFUSED_MAP;
     }
+    u->unsigned_places &= ~(1u << place);
+    u->unsigned_places |= (uint32_t)change->is_unsigned << place;
     draw_on(u, shift_was, now_us);
     return LM_REFUSED_NOT;
 }

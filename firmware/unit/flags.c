@@ -109,7 +109,7 @@ uint32_t lm_update_flags(struct lm_unit *u, uint64_t now_us)
         (u->exercise.is_stale || u->malfunctions.is_stale || u->live.is_silent ? LM_FLAG_EXERCISE
                                                                                : 0u) |
         (u->malfunctions.now.set != 0 ? LM_FLAG_MALFUNCTION : 0u) |
-        (u->board->is_database_unsigned ? LM_FLAG_UNSIGNED : 0u) |
+        (u->board->is_database_unsigned || u->unsigned_places != 0 ? LM_FLAG_UNSIGNED : 0u) |
         (now_us < u->unable.until_us ? LM_FLAG_UNABLE : 0u) |
         (has_restarted(u) && now_us < LM_RESTART_SHOWN_US ? LM_FLAG_RESTART : 0u) |
         (is_bus_silent(u, now_us) ? LM_FLAG_BUS : 0u);

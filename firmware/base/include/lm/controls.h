@@ -84,9 +84,10 @@ struct lm_slots_state {
 
 /* An image beside the database. */
 struct lm_image_change {
-    int32_t place;  /* 2..LM_IMAGES_MAX, as people count them; where no other is, if it comes */
-    uint32_t crc;   /* of a replay alone, which knows it by this */
-    uint64_t bytes; /* of its flash; 0: it goes */
+    int32_t place;    /* 2..LM_IMAGES_MAX, as people count them; where no other is, if it comes */
+    uint32_t crc;     /* of a replay alone, which knows it by this */
+    uint64_t bytes;   /* of its flash; 0: it goes */
+    bool is_unsigned; /* the board does not know who made it: LM_FLAG_UNSIGNED while it is there */
 };
 
 /* One act of the operator. Only the member that belongs to `kind` means anything.

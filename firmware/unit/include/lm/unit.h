@@ -133,6 +133,7 @@ struct lm_unit {
     uint64_t last_bus_2_us;      /* the same of can_2 */
     bool is_restored;            /* it began with the board's settings */
     struct lm_slots_state slots; /* as the board said last */
+    uint32_t unsigned_places; /* bit n: the image that came to place n + 1 in flight is unsigned */
     struct {
         bool is_known;  /* there was a position */
         uint32_t jumps; /* nav.position_jumps as of the last step */
