@@ -189,7 +189,8 @@ static void take_pixels(const struct grid *g, const struct trace_grid *cells, in
 }
 
 static int focus(struct grid *g, const struct trace_records *r, const struct reflect_law *law,
-                 const struct focus_order *o, float complex *chip)
+                 const struct focus_order *o, const struct coherent_echo *more, size_t more_count,
+                 float complex *chip)
 {
     if (side_open(&g->across, o, r->grid.cells_across, r->grid.cell_m) != 0 ||
         side_open(&g->range, o, r->grid.cells_range, r->grid.cell_m) != 0) {
@@ -205,6 +206,9 @@ static int focus(struct grid *g, const struct trace_records *r, const struct ref
     }
     make_table(g->table);
     coherent_echoes(r, law, o->seed, lay_echo, g);
+    for (size_t i = 0; i < more_count; i++) {
+        lay_echo(g, &more[i]);
+    }
     if (filter(g) != 0) {
         return -1;
     }
@@ -227,6 +231,13 @@ static int check_pixels(const struct trace_records *r, const struct focus_order 
 float complex *focus_chip(const struct trace_records *r, const struct reflect_law *law,
                           const struct focus_order *o)
 {
+    return focus_chip_with(r, law, o, NULL, 0);
+}
+
+float complex *focus_chip_with(const struct trace_records *r, const struct reflect_law *law,
+                               const struct focus_order *o, const struct coherent_echo *more,
+                               size_t count)
+{
     if (check_pixels(r, o) != 0) {
         return NULL;
     }
@@ -236,7 +247,7 @@ float complex *focus_chip(const struct trace_records *r, const struct reflect_la
     struct grid *grid = calloc(1, sizeof *grid);
     int result = chip && grid ? 0 : hs_error("picture", "give fewer --cells", "out of memory");
     if (result == 0) {
-        result = focus(grid, r, law, o, chip);
+        result = focus(grid, r, law, o, more, count, chip);
         fftw_free(grid->values);
         free(grid->across.weights);
         free(grid->range.weights);

@@ -199,6 +199,40 @@ int mesh_parts(const struct mesh *m, int32_t *part_of, uint32_t *part_count)
     return has_memory ? 0 : -1;
 }
 
+/* Those that share both ends are one; returns how many that leaves. */
+static size_t pair_edges(const struct edge *edges, size_t count, struct mesh_edge *pairs)
+{
+    size_t kept = 0;
+    for (size_t i = 0, end; i < count; i = end) {
+        for (end = i + 1; end < count && by_ends(&edges[i], &edges[end]) == 0; end++) {
+        }
+        if (end - i <= 2) {
+            const uint32_t other = end - i == 2 ? edges[i + 1].triangle : MESH_NO_TRIANGLE;
+            pairs[kept++] =
+                (struct mesh_edge){edges[i].low, edges[i].high, edges[i].triangle, other};
+        }
+    }
+    return kept;
+}
+
+struct mesh_edge *mesh_edges(const struct mesh *m, size_t *count)
+{
+    struct mesh_audit audit = {0};
+    const size_t room = (size_t)m->triangle_count * 3 + 1;
+    uint32_t *weld = welded(m);
+    struct edge *edges = malloc(room * sizeof *edges);
+    struct mesh_edge *pairs = malloc(room * sizeof *pairs);
+    if (weld && edges && pairs) {
+        *count = pair_edges(edges, list_edges(m, weld, edges, &audit), pairs);
+    } else {
+        free(pairs);
+        pairs = NULL;
+    }
+    free(weld);
+    free(edges);
+    return pairs;
+}
+
 int mesh_audit(const struct mesh *m, const char *place, struct mesh_audit *audit)
 {
     *audit = (struct mesh_audit){0};

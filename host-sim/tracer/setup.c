@@ -347,7 +347,8 @@ float *setup_chip(const struct setup *s, const struct trace_records *r, int *wid
 }
 
 float complex *setup_complex_chip(const struct setup *s, const struct trace_records *r,
-                                  enum focus_weighting weighting, int *width, int *height)
+                                  enum focus_weighting weighting, const struct edge_echoes *edges,
+                                  int *width, int *height)
 {
     struct reflect_law law;
     const struct focus_order order = {weighting, s->resolution_m, (uint32_t)s->ratio,
@@ -356,5 +357,5 @@ float complex *setup_complex_chip(const struct setup *s, const struct trace_reco
         return NULL;
     }
     find_size(s, &r->grid, width, height);
-    return focus_chip(r, &law, &order);
+    return focus_chip_with(r, &law, &order, edges ? edges->echoes : NULL, edges ? edges->count : 0);
 }

@@ -33,7 +33,7 @@ struct outputs {
     int tone; /* enum chip_tone_kind */
     double cut_db;
     long levels;
-    bool is_coherent, is_raw;
+    bool is_coherent, is_raw, has_edges;
     int weighting;            /* enum focus_weighting */
     struct complex_site site; /* latitude NAN: none */
     double squint_deg;
@@ -75,10 +75,11 @@ static int write_png(const struct setup *s, const struct outputs *o, const float
 
 /* Power of a complex chip, which is written when that is asked for. */
 static float *coherent_power(const struct setup *s, const struct trace_records *r,
-                             const struct outputs *o, int *width, int *height)
+                             const struct edge_echoes *edges, const struct outputs *o, int *width,
+                             int *height)
 {
     const enum focus_weighting weighting = (enum focus_weighting)o->weighting;
-    float complex *chip = setup_complex_chip(s, r, weighting, width, height);
+    float complex *chip = setup_complex_chip(s, r, weighting, edges, width, height);
     if (!chip) {
         return NULL;
     }
@@ -101,18 +102,20 @@ static float *coherent_power(const struct setup *s, const struct trace_records *
 }
 
 static float *chip_power(const struct setup *s, const struct trace_records *r,
-                         const struct outputs *o, int *width, int *height)
+                         const struct edge_echoes *edges, const struct outputs *o, int *width,
+                         int *height)
 {
     if (o->is_coherent) {
-        return coherent_power(s, r, o, width, height);
+        return coherent_power(s, r, edges, o, width, height);
     }
     return o->is_raw ? setup_cells(s, r, width, height) : setup_chip(s, r, width, height);
 }
 
-static int render(const struct setup *s, const struct trace_records *r, const struct outputs *o)
+static int render(const struct setup *s, const struct trace_records *r,
+                  const struct edge_echoes *edges, const struct outputs *o)
 {
     int width, height;
-    float *power = chip_power(s, r, o, &width, &height);
+    float *power = chip_power(s, r, edges, o, &width, &height);
     if (!power) {
         return -1;
     }
@@ -146,15 +149,35 @@ static int keep_layer(struct trace_records *r, long layer)
     return 0;
 }
 
-static int trace_model(const struct setup *s, struct trace_records *r)
+/* The echoes of the model's edges, in pieces of half a cell. */
+static int find_edges(const struct setup *s, const struct mesh *m, const struct scene *scene,
+                      const struct trace_records *r, struct edge_echoes *edges)
 {
+    struct reflect_law law;
+    return setup_law(s, r, &law) == 0 ? edges_make(edges, m, scene, &r->look, &law, s->cell_m / 2)
+                                      : -1;
+}
+
+static int trace_model(const struct setup *s, const struct outputs *o, struct trace_records *r,
+                       struct edge_echoes *edges)
+{
+    struct mesh m;
     struct scene scene;
-    if (setup_scene(s, &scene) != 0) {
+    if (setup_load(s, &m) != 0) {
         return -1;
     }
-    const struct trace_order order = setup_order(s, s->azimuth_deg);
-    const int result = trace_run(&scene, &order, s->model, r, NULL);
-    scene_close(&scene);
+    int result = setup_scene_of(s, &m, &scene);
+    if (result == 0) {
+        const struct trace_order order = setup_order(s, s->azimuth_deg);
+        result = trace_run(&scene, &order, s->model, r, NULL);
+        if (result == 0 && o->has_edges && o->layer <= 1 &&
+            find_edges(s, &m, &scene, r, edges) != 0) {
+            trace_records_free(r);
+            result = -1;
+        }
+        scene_close(&scene);
+    }
+    mesh_free(&m);
     return result;
 }
 
@@ -171,7 +194,8 @@ static int check_ends(const struct trace_records *r, const struct outputs *o, co
 static int run(const struct setup *s, const char *records, const struct outputs *o)
 {
     struct trace_records r;
-    const int loaded = records ? trace_records_read(&r, records) : trace_model(s, &r);
+    struct edge_echoes edges = {0};
+    const int loaded = records ? trace_records_read(&r, records) : trace_model(s, o, &r, &edges);
     if (loaded != 0) {
         return HS_EXIT_FAILED;
     }
@@ -179,7 +203,8 @@ static int run(const struct setup *s, const char *records, const struct outputs 
     if (result == 0 && o->squint_deg != 0) {
         squint_records(&r, o->squint_deg);
     }
-    result = result == 0 && keep_layer(&r, o->layer) == 0 ? render(s, &r, o) : -1;
+    result = result == 0 && keep_layer(&r, o->layer) == 0 ? render(s, &r, &edges, o) : -1;
+    edges_free(&edges);
     trace_records_free(&r);
     return result == 0 ? HS_EXIT_OK : HS_EXIT_FAILED;
 }
@@ -201,7 +226,7 @@ int target_cmd_render(int argc, char **argv)
         .zoom = 6, .weighting = FOCUS_TAYLOR, .cut_db = 20, .levels = 256, .site = {NAN, NAN, 0}};
     const char *records = NULL;
     long zoom = 6;
-    enum { OWN = 47, COUNT = OWN + SETUP_OPTIONS + SETUP_ENDS_OPTIONS };
+    enum { OWN = 51, COUNT = OWN + SETUP_OPTIONS + SETUP_ENDS_OPTIONS };
     struct hs_option options[COUNT] = {
         {"records", HS_INPUT, &records, 0, 0, "FILE.trace", "in place of a model", false},
         {"out", HS_OUTPUT, &o.png, 0, 0, "FILE.png", "the picture", false},
@@ -209,6 +234,11 @@ int target_cmd_render(int argc, char **argv)
         {"complex", HS_OUTPUT, &o.complex_file, 0, 0, "FILE.tif|FILE.ntf",
          "the fields, as GeoTIFF or NITF", false},
         {"coherent", HS_FLAG, &o.is_coherent, 0, 0, NULL, "add fields instead of power", false},
+        {"edges", HS_FLAG, &o.has_edges, 0, 0, NULL,
+         "add what the model's edges diffract, by Ufimtsev's physical theory", false},
+        HS_NEEDS_ROW("edges", "coherent"),
+        HS_NEEDS_ROW("edges", "model"),
+        HS_CLASHES_ROW("edges", ENDS "|squint"),
         {"weighting", HS_CHOICE, &o.weighting, 0, 0, FOCUS_WEIGHTING_WORDS,
          "of the radar's band, with --coherent", false},
         {"layer", HS_INTEGER, &o.layer, 0, TRACE_BOUNCES_MAX, "N",

@@ -39,4 +39,9 @@ double focus_band(enum focus_weighting weighting, double resolution_m);
 float complex *focus_chip(const struct trace_records *r, const struct reflect_law *law,
                           const struct focus_order *o);
 
+/* The same with `count` echoes more, such as those of edges. */
+float complex *focus_chip_with(const struct trace_records *r, const struct reflect_law *law,
+                               const struct focus_order *o, const struct coherent_echo *more,
+                               size_t count);
+
 #endif

@@ -22,6 +22,17 @@ int mesh_audit(const struct mesh *m, const char *place, struct mesh_audit *audit
  * lack of memory, not reported. */
 int mesh_parts(const struct mesh *m, int32_t *part_of, uint32_t *part_count);
 
+/* An edge between two vertices, and its one or two triangles. */
+struct mesh_edge {
+    uint32_t from, to, triangle;
+    uint32_t other; /* MESH_NO_TRIANGLE: the edge is open */
+};
+#define MESH_NO_TRIANGLE UINT32_MAX
+
+/* The edges of one or two triangles, free() them; those of more are left out, and so are triangles
+ * without area. NULL for lack of memory, not reported. */
+struct mesh_edge *mesh_edges(const struct mesh *m, size_t *count);
+
 /* Refuse a model that is not made of closed bodies with their outer sides outwards, and tell how to
  * mend it. Returns 0, or -1 with everything that is wrong reported as one error. */
 int mesh_require_closed(const struct mesh_audit *audit, const char *place);

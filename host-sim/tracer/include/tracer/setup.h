@@ -4,6 +4,7 @@
 #define TRACER_SETUP_H
 
 #include "hs/options.h"
+#include "tracer/edges.h"
 #include "tracer/focus.h"
 #include "tracer/pix.h"
 #include "tracer/reflect.h"
@@ -68,8 +69,10 @@ float *setup_chip(const struct setup *s, const struct trace_records *r, int *wid
 /* The same before its last step: the power in each cell. */
 float *setup_cells(const struct setup *s, const struct trace_records *r, int *width, int *height);
 
-/* The same as complex numbers (tracer/focus.h): fields with their phase, under that weighting. */
+/* The same as complex numbers (tracer/focus.h): fields with their phase, under that weighting;
+ * with those of edges, unless `edges` is NULL. */
 float complex *setup_complex_chip(const struct setup *s, const struct trace_records *r,
-                                  enum focus_weighting weighting, int *width, int *height);
+                                  enum focus_weighting weighting, const struct edge_echoes *edges,
+                                  int *width, int *height);
 
 #endif

@@ -48,6 +48,31 @@ TEST(a_command_line_without_sense_ends_with_2)
     assert_int_equal(run("render --model slicy --coherent --looks 2 --csv y.csv"), 2);
     assert_int_equal(run("render --model slicy --distance 50 --squint 9 --csv y.csv"), 2);
     assert_int_equal(run("sheet --model slicy --distance 50 --out y.png"), 2);
+    assert_int_equal(run("render --model slicy --edges --csv y.csv"), 2);
+    assert_int_equal(run("render --model slicy --edges --coherent --squint 9 --csv y.csv"), 2);
+    assert_int_equal(run("render --model slicy --edges --coherent --distance 99 --csv y.csv"), 2);
+}
+
+/* An upright plate from 65 degrees above: optics sends it away, its edges do not. Their layer is
+ * the first.
+ */
+TEST(edges_make_a_turned_plate_brighter)
+{
+    static const char plate[] =
+        "render --model plate --no-ground --depression 65 "
+        "--cells 160 --coherent --law fresnel-hh --csv";
+    char line[256];
+    snprintf(line, sizeof line, "%s optics.csv", plate);
+    assert_int_equal(run(line), 0);
+    snprintf(line, sizeof line, "%s edges.csv --edges --layer 1", plate);
+    assert_int_equal(run(line), 0);
+    assert_int_equal(
+        shell("paste -d, optics.csv edges.csv | awk -F, '{ n = NF / 2; for (i = 1; i <= n; i++) { "
+              "if ($i > a) a = $i; if ($(i + n) > b) b = $(i + n) } } END { exit !(b > 2 * a) }'"),
+        0);
+    snprintf(line, sizeof line, "%s second.csv --edges --layer 2", plate);
+    assert_int_equal(run(line), 0);
+    assert_int_equal(shell("! grep -q '[1-9]' second.csv"), 0);
 }
 
 /* A near radar and a receiver apart go from trace to render by way of the file. */
