@@ -131,6 +131,39 @@ int output_truth(const struct scene *s, const struct picture *p, const char *pat
     return write_raster(path, &r, names);
 }
 
+/* How many of the sub-pixels of a pixel belong to each class. */
+static void count_shares(const struct canvas *c, int x, int y, uint8_t *shares)
+{
+    for (int k = 0; k < CANVAS_SUB * CANVAS_SUB; k++) {
+        const int sub_x = CANVAS_SUB * x + k % CANVAS_SUB, sub_y = CANVAS_SUB * y + k / CANVAS_SUB;
+        const size_t at = (size_t)sub_y * (size_t)c->side + (size_t)sub_x;
+        shares[material_look((enum material)c->material[at])->group]++;
+    }
+}
+
+int output_shares(const struct scene *s, const char *path)
+{
+    struct raster r = on_image_grid(s);
+    const char *names[CLASS_COUNT];
+    const size_t side = (size_t)s->size;
+    uint8_t *shares = calloc(side * side, CLASS_COUNT);
+    if (!shares) {
+        return hs_error(path, "make the scene smaller", "out of memory");
+    }
+    for (int c = 0; c < CLASS_COUNT; c++) {
+        names[c] = material_class_name((enum material_class)c);
+    }
+    for (size_t i = 0; i < side * side; i++) {
+        count_shares(&s->canvas, (int)(i % side), (int)(i / side), shares + i * CLASS_COUNT);
+    }
+    r.bands = CLASS_COUNT;
+    r.type = GDT_Byte;
+    r.pixels = shares;
+    const int result = write_raster(path, &r, names);
+    free(shares);
+    return result;
+}
+
 int output_heights(const struct scene *s, const struct picture *p, const char *path)
 {
     struct raster r = on_image_grid(s);

@@ -6,6 +6,7 @@
 #include "classify/error_regions.h"
 #include "classify/judge.h"
 #include "classify/learn.h"
+#include "classify/mixtures.h"
 #include "classify/mlp_apply.h"
 #include "gis/class_raster.h"
 #include "gis/gdal_start.h"
@@ -30,6 +31,9 @@ static const struct hs_usage usage = {
         "pixel as a compressed GeoTIFF (Byte, 255 for no data) with the image's georeferencing and "
         "the class\n"
         "table's colours and names.\n\n"
+        "Pixels across a border between two classes are a mixture of both, which may look like a "
+        "third: they\n"
+        "take the class that covers more of them (--mixtures).\n\n"
         "Specks, smaller than --sieve says, take the class around them: single wrong pixels stand "
         "as bright\n"
         "spots in a picture that is finer than the map. Look at the result (--picture) before "
@@ -47,7 +51,7 @@ struct options {
     struct db_image_options image;
     struct db_exemplar_options known; /* for the report */
     const char *classes, *net, *out, *picture, *report, *reject;
-    double sure, sieve;
+    double sure, mixtures, sieve;
     struct hs_list picture_bands, spare;
     long square;
 };
@@ -76,6 +80,14 @@ static bool read_options(struct options *o, int argc, char **argv, int *exit_cod
          false},
         {"sure", HS_REAL, &o->sure, 0.5, 0.999, "P",
          "With --reject: also to pixels whose class is less than so probable against the next.",
+         false},
+        {"mixtures", HS_REAL, &o->mixtures, 0, 1, "X",
+         "Pixels without five neighbours of their own class, whose bands lie on the line between "
+         "two classes\n"
+         "around them, take that of the larger share. X is how far from the line they may lie, as "
+         "a "
+         "part of\n"
+         "the distance between the two; 0 leaves all as the network says.",
          false},
         {"sieve", HS_REAL, &o->sieve, 0, 10000, "M2",
          "Regions of one class that cover less ground than so many square metres, corners counted "
@@ -117,8 +129,12 @@ struct work {
     struct db_judge judge;
     uint8_t rejected_class; /* what rejected pixels become */
     struct db_raster image;
-    struct db_raster_out raw, out; /* as the network says, and as the sieve leaves it */
-    int speck_pixels;              /* regions of fewer are specks */
+    /* As the network says, with mixtures resolved, and as the sieve leaves it. Without the rule
+     * `settled` is not used. */
+    struct db_raster_out raw, settled, out;
+    const struct db_raster_out *before_sieve; /* one of them */
+    struct db_mixtures mixtures;
+    int speck_pixels; /* regions of fewer are specks */
     bool is_spared[DB_CLASS_MAX];
     struct db_exemplars exemplars;
     uint8_t *given; /* owned: class of each exemplar */
@@ -128,7 +144,7 @@ struct work {
     int shown_count;
     uint64_t counts[256];  /* pixels of each class by the network, without those rejected */
     uint64_t written[256]; /* pixels of each class in the raster */
-    uint64_t rejected, sieved;
+    uint64_t rejected, resolved, sieved;
     double seconds; /* of the network alone */
 };
 
@@ -219,6 +235,21 @@ static int find_spared(struct work *w)
     return 0;
 }
 
+/* A raster of its own name, for classes on their way: two under the name of the result would be
+ * written into one file. */
+static int create_step(const struct work *w, struct db_raster_out *step, const char *name)
+{
+    const size_t size = strlen(w->options->out) + strlen(name) + 2;
+    char *path = malloc(size);
+    if (!path) {
+        return hs_error(w->options->out, NULL, "out of memory");
+    }
+    snprintf(path, size, "%s.%s", w->options->out, name);
+    const int result = db_class_raster_create(step, path, &w->image.grid, &w->table);
+    free(path);
+    return result;
+}
+
 static int prepare(struct work *w)
 {
     const struct options *o = w->options;
@@ -241,7 +272,12 @@ static int prepare(struct work *w)
         return -1;
     }
     w->speck_pixels = db_sieve_pixels(&w->image.grid, o->sieve);
-    return db_class_raster_create(&w->raw, o->out, &w->image.grid, &w->table) != 0 ||
+    w->before_sieve = o->mixtures > 0 ? &w->settled : &w->raw;
+    if (o->mixtures > 0 && (db_mixtures_init(&w->mixtures, &w->net, o->mixtures) != 0 ||
+                            create_step(w, &w->settled, "mixtures") != 0)) {
+        return -1;
+    }
+    return create_step(w, &w->raw, "network") != 0 ||
                    db_class_raster_create(&w->out, o->out, &w->image.grid, &w->table) != 0
                ? -1
                : 0;
@@ -312,23 +348,47 @@ static int segment_block(struct work *w, const struct block *b)
     return db_raster_write(&w->raw, b->y, b->rows, b->classes);
 }
 
-/* ---- the sieve ---- */
-
-/* Take the rows of the block from a raster that is being written. */
-static int read_back(const struct work *w, const struct db_raster_out *from, const struct block *b,
+/* Take rows from a raster that is being written. */
+static int read_back(const struct work *w, const struct db_raster_out *from, int y, int rows,
                      uint8_t *classes)
 {
     const int width = w->image.grid.width;
     CPLErrorReset();
-    if (GDALRasterIO(GDALGetRasterBand(from->dataset, 1), GF_Read, 0, b->y, width, b->rows, classes,
-                     width, b->rows, GDT_Byte, 0, 0) != CE_None) {
+    if (GDALRasterIO(GDALGetRasterBand(from->dataset, 1), GF_Read, 0, y, width, rows, classes,
+                     width, rows, GDT_Byte, 0, 0) != CE_None) {
         return hs_error(from->path, "free some space and run again", "cannot be read again: %s",
                         db_gdal_complaint());
     }
     return 0;
 }
 
-/* `reject` holds what the network said: what is spared has it again. */
+/* ---- mixtures ---- */
+
+/* The rows of the block are judged with those around them; `rows` counts all that there is room
+ * for but the halo. `margins` is not used. */
+static int resolve_block(struct work *w, const struct block *b)
+{
+    const int top = b->y > DB_MIXTURES_HALO ? b->y - DB_MIXTURES_HALO : 0;
+    const int wanted = b->y + b->rows + DB_MIXTURES_HALO;
+    const int bottom = wanted < w->image.grid.height ? wanted : w->image.grid.height;
+    const struct db_mixtures_block m = {.planes = b->planes,
+                                        .classes = b->classes,
+                                        .sure = b->valid,
+                                        .width = w->image.grid.width,
+                                        .rows = bottom - top,
+                                        .first = b->y - top,
+                                        .count = b->rows};
+    if (db_raster_read(&w->image, top, bottom - top, b->planes, b->valid) != 0 ||
+        read_back(w, &w->raw, top, bottom - top, b->classes) != 0) {
+        return -1;
+    }
+    w->resolved += db_mixtures_resolve(&w->mixtures, &m, b->reject);
+    return db_raster_write(&w->settled, b->y, b->rows, b->reject);
+}
+
+/* ---- the sieve ---- */
+
+/* `reject` holds what stood there before the sieve: what is spared has it again. */
 static int restore_spared(struct work *w, const struct block *b)
 {
     const size_t count = (size_t)b->rows * (size_t)w->image.grid.width;
@@ -360,8 +420,8 @@ static void keep_classes(struct work *w, const struct block *b)
 
 static int finish_block(struct work *w, const struct block *b)
 {
-    if (read_back(w, &w->raw, b, b->reject) != 0 || read_back(w, &w->out, b, b->classes) != 0 ||
-        restore_spared(w, b) != 0) {
+    if (read_back(w, w->before_sieve, b->y, b->rows, b->reject) != 0 ||
+        read_back(w, &w->out, b->y, b->rows, b->classes) != 0 || restore_spared(w, b) != 0) {
         return -1;
     }
     keep_classes(w, b);
@@ -416,13 +476,17 @@ static int segment(struct work *w)
     const struct db_grid *grid = &w->image.grid;
     const size_t bytes = db_feature_bytes(w->image.band_count, w->net.context) + 2 + sizeof(float);
     const int rows = db_raster_block_rows(grid, bytes);
+    const size_t held = (size_t)rows + (w->options->mixtures > 0 ? 2 * DB_MIXTURES_HALO : 0);
     struct block b;
-    if (alloc_block(w, &b, (size_t)rows * (size_t)grid->width) != 0) {
+    if (alloc_block(w, &b, held * (size_t)grid->width) != 0) {
         return -1;
     }
     int result = for_all_blocks(w, &b, "segment", rows, segment_block);
+    if (result == 0 && w->options->mixtures > 0) {
+        result = for_all_blocks(w, &b, "mixtures", rows, resolve_block);
+    }
     if (result == 0) {
-        result = db_sieve(&w->out, &w->raw, w->speck_pixels);
+        result = db_sieve(&w->out, w->before_sieve, w->speck_pixels);
     }
     if (result == 0) {
         result = for_all_blocks(w, &b, "write", rows, finish_block);
@@ -479,6 +543,9 @@ static int write_report(const struct work *w)
 static void print_counts(struct work *w)
 {
     db_class_counts_print(&w->table, w->written);
+    printf("mixtures: %llu pixels took the class of the larger share\n",
+           (unsigned long long)w->resolved);
+    hs_report_put("mixtures", w->resolved);
     printf("sieve: %llu pixels took the class around them, in regions of fewer than %d pixels\n",
            (unsigned long long)w->sieved, w->speck_pixels);
     hs_report_object("sieve");
@@ -504,6 +571,7 @@ static int run(struct work *w)
 {
     const bool is_written = prepare(w) == 0 && segment(w) == 0 && db_raster_commit(&w->out) == 0;
     db_raster_abort(&w->raw);
+    db_raster_abort(&w->settled);
     if (!is_written) {
         db_raster_abort(&w->out);
         return HS_EXIT_FAILED;
@@ -521,7 +589,11 @@ static int run(struct work *w)
 int db_cmd_segment(int argc, char **argv)
 {
     hs_outputs_together();
-    struct options options = {.known = {.field = "class"}, .square = 64, .sure = 0.5, .sieve = 60};
+    struct options options = {.known = {.field = "class"},
+                              .square = 64,
+                              .sure = 0.5,
+                              .mixtures = DB_MIXTURES_TOLERANCE,
+                              .sieve = 60};
     int exit_code;
     struct work *w = calloc(1, sizeof *w);
     if (!w) {
@@ -537,6 +609,7 @@ int db_cmd_segment(int argc, char **argv)
     db_exemplars_free(&w->exemplars);
     free(w->given);
     db_raster_close(&w->image);
+    db_mixtures_free(&w->mixtures);
     db_apply_free(&w->applied);
     db_net_free(&w->net);
     hs_list_free(&options.image.paths);

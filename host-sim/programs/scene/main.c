@@ -35,7 +35,7 @@ struct command {
     const char *folder;
     long seed, size;
     double cell_m;
-    bool has_preview;
+    bool has_preview, has_shares;
 };
 
 static bool parse_command(struct command *c, int argc, char **argv, int *exit_code)
@@ -50,6 +50,9 @@ static bool parse_command(struct command *c, int argc, char **argv, int *exit_co
         {"cell", HS_REAL, &c->cell_m, 1, 50, "M", "size of a pixel in metres", false},
         {"preview", HS_FLAG, &c->has_preview, 0, 0, NULL,
          "also write preview.png (colours), truth.png (classes), terrain.png (relief)", false},
+        {"shares", HS_FLAG, &c->has_shares, 0, 0, NULL,
+         "also write shares.tif: how many of the four parts of a pixel belong to each class",
+         false},
         {"Files", HS_HEADING, NULL, 0, 0, NULL, files_help, false},
     };
     return hs_options_read(&usage, options, sizeof options / sizeof options[0], argc, argv,
@@ -82,30 +85,37 @@ static int write_preview_terrain(const struct scene *s, const struct picture *p,
     return output_preview_terrain(s, path);
 }
 
+static int write_shares(const struct scene *s, const struct picture *p, const char *path)
+{
+    (void)p;
+    return output_shares(s, path);
+}
+
 static int write_files(const struct command *c, const struct scene *s, const struct picture *p)
 {
-    static const struct {
+    const struct {
         const char *name;
         picture_writer *write;
-        bool is_preview;
+        bool is_wanted;
     } files[] = {
-        {"image.tif", output_image, false},
-        {"terrain.tif", write_terrain, false},
-        {"truth.tif", output_truth, false},
-        {"heights.tif", output_heights, false},
-        {"exemplars.geojson", exemplars_write, false},
-        {"detail.txt", write_detail, false},
-        {"preview.png", output_preview_image, true},
-        {"truth.png", output_preview_truth, true},
-        {"terrain.png", write_preview_terrain, true},
-        {"scene.txt", write_description, false},
+        {"image.tif", output_image, true},
+        {"terrain.tif", write_terrain, true},
+        {"truth.tif", output_truth, true},
+        {"heights.tif", output_heights, true},
+        {"exemplars.geojson", exemplars_write, true},
+        {"detail.txt", write_detail, true},
+        {"preview.png", output_preview_image, c->has_preview},
+        {"truth.png", output_preview_truth, c->has_preview},
+        {"terrain.png", write_preview_terrain, c->has_preview},
+        {"shares.tif", write_shares, c->has_shares},
+        {"scene.txt", write_description, true},
     };
     for (size_t i = 0; i < sizeof files / sizeof *files; i++) {
         char path[4096];
         if (snprintf(path, sizeof path, "%s/%s", c->folder, files[i].name) >= (int)sizeof path) {
             return hs_error("--out", "choose a shorter one", "the name of the folder is too long");
         }
-        if ((c->has_preview || !files[i].is_preview) && files[i].write(s, p, path) != 0) {
+        if (files[i].is_wanted && files[i].write(s, p, path) != 0) {
             return -1;
         }
     }

@@ -11,10 +11,12 @@
 #define SCENE_EAST_M  334000.0
 #define SCENE_NORTH_M 4651000.0
 
-/* GeoTIFF files: the bands of the image, its true classes, the heights of what stands on the
+/* GeoTIFF files: the bands of the image, its true classes, how much of each pixel is
+ * of each class, the heights of what stands on the
  * ground, and the elevation of the ground. */
 int output_image(const struct scene *s, const struct picture *p, const char *path);
 int output_truth(const struct scene *s, const struct picture *p, const char *path);
+int output_shares(const struct scene *s, const char *path); /* a band a class: parts of 4 */
 int output_heights(const struct scene *s, const struct picture *p, const char *path);
 int output_terrain(const struct scene *s, const char *path);
 

@@ -281,6 +281,7 @@ def db_segment():
     rejected, of, outside, unsure = find(r"^rejected: (\d+) pixels of (\d+) became nodata; (\d+) outside the range, (\d+) uns", text)
     assert r["rejected"] == {"pixels": rejected, "outside": outside, "unsure": unsure, "became": "nodata"} and of == 512 * 512
     assert r["pixels_without_data"] == rejected > 0
+    assert [r["mixtures"]] == find(r"^mixtures: (\d+) pixels took the class of the larger share$", text) and r["mixtures"] > 0
     pixels, fewer = find(r"^sieve: (\d+) pixels took the class around them, in regions of fewer than (\d+) pixels", text)
     assert r["sieve"] == {"pixels": pixels, "speck_pixels": fewer} and pixels > 0
     share, band = find(r"^outside the range of the training: ([\d.]+) % of the pixels; most in band (\d+)", text)

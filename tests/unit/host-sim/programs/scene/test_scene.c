@@ -37,7 +37,7 @@ static int write_scene(void **state)
     GDALAllRegister();
     snprintf(w.folder, sizeof w.folder, "%s/tmp/scene", support_build_dir());
     support_run("mkdir -p %s", w.folder);
-    if (support_run("%s/bin/landmass-scene --out %s --size %d --cell 10 --seed 3",
+    if (support_run("%s/bin/landmass-scene --out %s --size %d --cell 10 --seed 3 --shares",
                     support_build_dir(), w.folder, SIZE) != 0) {
         return -1;
     }
@@ -133,6 +133,31 @@ TEST(the_terrain_reaches_past_every_edge_of_the_image)
     assert_true(right - t[1] > w->transform[0] + SIZE * w->transform[1]);
     assert_true(bottom - t[5] < w->transform[3] + SIZE * w->transform[5]);
     GDALClose(d);
+}
+
+TEST(the_shares_of_a_pixel_make_it_whole_and_its_class_is_one_of_the_largest)
+{
+    const struct written *w = *state;
+    static uint8_t shares[CLASSES * SIZE * SIZE];
+    GDALDatasetH d = open_file(w, "shares.tif");
+    assert_non_null(d);
+    assert_int_equal(GDALDatasetRasterIO(d, GF_Read, 0, 0, SIZE, SIZE, shares, SIZE, SIZE, GDT_Byte,
+                                         CLASSES, NULL, CLASSES, CLASSES * SIZE, 1),
+                     CE_None);
+    GDALClose(d);
+    int mixed = 0;
+    for (int i = 0; i < SIZE * SIZE; i++) {
+        const uint8_t *of = shares + CLASSES * i;
+        int sum = 0, most = 0;
+        for (int c = 0; c < CLASSES; c++) {
+            sum += of[c];
+            most = of[c] > most ? of[c] : most;
+        }
+        assert_int_equal(sum, 4);
+        assert_int_equal(of[w->truth[i]], most);
+        mixed += most < 4;
+    }
+    assert_in_range(mixed, SIZE * SIZE / 100, SIZE * SIZE / 5);
 }
 
 TEST(every_class_covers_a_plausible_share)
