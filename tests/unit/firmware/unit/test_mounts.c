@@ -1,0 +1,292 @@
+/* Images that come and go in flight: what is drawn behind it is what a start with the same images
+ * draws, and nothing of one that has gone is read any more. The flash is late, wrong, or hangs. */
+#include "check.h"
+#include "unit_rig.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+enum { IMAGES = 4, ROUNDS = 60 };
+
+/* Behind the rig's country in its flash: a finer image, another of the same cells, one of other
+ * classes. The first and the second overlap. */
+struct world {
+    struct rig *rig;
+    uint8_t *bytes;
+    struct lm_flash_part parts[IMAGES];
+};
+
+static struct tiny_cell trees(void *ctx, const struct tiny_place *p)
+{
+    const double *gamma_db = ctx;
+    const bool is_open = p->east_m + 0.3 * p->north_m > 300;
+    return is_open ? (struct tiny_cell){0, TINY_NONE, 0}
+                   : (struct tiny_cell){*gamma_db, TINY_TREES, 3};
+}
+
+static struct tiny_image build(double gamma_db, bool is_foreign)
+{
+    struct tiny_spec spec = tiny_spec_at(46, 11);
+    struct lm_classes other = *tiny_classes();
+    struct tiny_image image;
+    other.height_dm[15]++;
+    spec.shift0 = 10;
+    spec.rows = spec.columns = 4;
+    spec.cell = trees;
+    spec.ctx = &gamma_db;
+    spec.classes = is_foreign ? &other : NULL;
+    assert_int_equal(tiny_image_build(&image, &spec), 0);
+    return image;
+}
+
+static struct world *make_world(void)
+{
+    struct world *w = calloc(1, sizeof *w);
+    w->rig = make_rig();
+    struct tiny_image images[IMAGES] = {w->rig->image, build(-8, false), build(-25, false),
+                                        build(-8, true)};
+    size_t size = 0;
+    for (int i = 0; i < IMAGES; i++) {
+        w->parts[i] = (struct lm_flash_part){size, images[i].size};
+        size += (images[i].size + 63) / 64 * 64;
+    }
+    w->bytes = calloc(1, size);
+    for (int i = 0; i < IMAGES; i++) {
+        memcpy(w->bytes + w->parts[i].offset, images[i].bytes, images[i].size);
+        if (i > 0) {
+            tiny_image_free(&images[i]);
+        }
+    }
+    memory_flash_open(&w->rig->board.flash, w->bytes, size);
+    return w;
+}
+
+/* `places`: bit n: the image n is there at the start. */
+static struct world *start(uint32_t places)
+{
+    struct world *w = make_world();
+    for (uint32_t i = 0; i < IMAGES; i++) {
+        w->rig->board.lent.images[i] =
+            (struct lm_flash_part){w->parts[i].offset, places >> i & 1 ? w->parts[i].bytes : 0};
+    }
+    assert_int_equal(lm_unit_init(&w->rig->unit, &w->rig->board.lent), LM_OK);
+    command(w->rig, range_10);
+    run(w->rig, 0.5);
+    return w;
+}
+
+static void end(struct world *w)
+{
+    free_rig(w->rig);
+    free(w->bytes);
+    free(w);
+}
+
+static void tell(struct world *w, int32_t place, uint64_t bytes)
+{
+    command(w->rig, (struct lm_control){.kind = LM_CONTROL_IMAGE,
+                                        .image = {.place = place, .bytes = bytes}});
+}
+
+static void comes(struct world *w, uint32_t i)
+{
+    tell(w, (int32_t)i + 1, w->parts[i].bytes);
+}
+
+static void goes(struct world *w, uint32_t i)
+{
+    tell(w, (int32_t)i + 1, 0);
+}
+
+static const struct lm_control patch = {
+    .kind = LM_CONTROL_SAR,
+    .sar = {
+        .cell_mm = 3000, .look_azimuth = 0x20000000, .range_m = 9000, .height_m_q6 = 2000 * 64}};
+
+/* The plane of a patch over the middle of all images. */
+static uint32_t patch_of(struct world *w)
+{
+    struct lm_control c = patch;
+    c.sar.centre = (struct lm_position){w->rig->unit.map.db.centre_latitude,
+                                        w->rig->unit.map.db.centre_longitude};
+    command(w->rig, c);
+    run(w->rig, 6);
+    assert_int_equal(w->rig->unit.page.picture, LM_PICTURE_PATCH);
+    assert_int_equal(w->rig->unit.picture.sar.line, w->rig->unit.picture.sar.lines);
+    return plane_sum(w->rig);
+}
+
+static uint32_t patch_of_start(uint32_t places)
+{
+    struct world *w = start(places);
+    const uint32_t sum = patch_of(w);
+    end(w);
+    return sum;
+}
+
+/* Cells that the sweep reads. */
+static uint32_t cell_of_sweep_mm(const struct world *w)
+{
+    return lm_db_cell_mm(&w->rig->unit.map.db, w->rig->unit.picture.sector.lod);
+}
+
+static uint8_t *forbidden_from, *forbidden_to;
+
+static bool fetch_unless_forbidden(void *to, const uint8_t *from, uint32_t length)
+{
+    assert_false(from >= forbidden_from && from < forbidden_to);
+    memcpy(to, from, length);
+    return true;
+}
+
+/* An image has gone: its bytes are nobody's from here on. */
+static void forbid(struct world *w, uint32_t i)
+{
+    forbidden_from = w->bytes + w->parts[i].offset;
+    forbidden_to = forbidden_from + w->parts[i].bytes;
+    w->rig->board.flash.fetch = fetch_unless_forbidden;
+}
+
+TEST(what_is_drawn_after_an_image_came_or_went_is_what_a_start_draws)
+{
+    const uint32_t one = patch_of_start(1), two = patch_of_start(3), three = patch_of_start(7);
+    assert_true(one != two);
+    for (uint32_t polls = 0; polls < 6; polls += 5) {
+        struct world *w = start(1);
+        w->rig->board.flash.busy_polls = polls;
+        comes(w, 2);
+        run(w->rig, 0.1);
+        comes(w, 1); /* has cells of the same length, and stands before it all the same */
+        run(w->rig, 0.3);
+        assert_int_equal(w->rig->unit.map.image_count, 3);
+        assert_int_equal(patch_of(w), three);
+        goes(w, 2);
+        run(w->rig, 0.004);
+        forbid(w, 2);
+        assert_int_equal(patch_of(w), two);
+        command(w->rig, (struct lm_control){.kind = LM_CONTROL_DROP});
+        run(w->rig, 0.7); /* in the middle of a sweep */
+        const uint32_t cell_mm = cell_of_sweep_mm(w);
+        goes(w, 1);
+        run(w->rig, 0.02);
+        assert_int_equal(cell_of_sweep_mm(w), cell_mm);
+        forbid(w, 1);
+        run(w->rig, 4);
+        assert_true(lit_pixels(w->rig) > 1000);
+        assert_int_equal(patch_of(w), one);
+        assert_int_equal(w->rig->unit.map.tiles.count.io_errors, 0);
+        assert_int_equal(w->rig->unit.count.commands_refused, 0);
+        end(w);
+    }
+}
+
+TEST(a_patch_half_drawn_begins_again_and_one_that_is_whole_stays)
+{
+    struct world *w = start(1);
+    const uint32_t two = patch_of_start(3), one = patch_of(w);
+    comes(w, 1);
+    run(w->rig, 2);
+    assert_int_equal(plane_sum(w->rig), one);
+    goes(w, 1);
+    struct lm_control c = patch;
+    c.sar.centre = w->rig->unit.picture.sar.command.centre;
+    command(w->rig, c);
+    run(w->rig, 0.004);
+    const struct lm_sar *sar = &w->rig->unit.picture.sar;
+    for (int i = 0; i < 3000 && sar->line < 50; i++) {
+        run(w->rig, 0.002);
+    }
+    assert_in_range(sar->line, 50, sar->lines - 1);
+    comes(w, 1);
+    run(w->rig, 6);
+    assert_int_equal(plane_sum(w->rig), two);
+    end(w);
+}
+
+TEST(an_image_that_is_refused_is_told_and_the_others_are_flown)
+{
+    struct world *w = start(3);
+    const uint32_t two = patch_of(w);
+    const struct lm_unit *u = &w->rig->unit;
+    comes(w, 3);
+    run(w->rig, 0.1);
+    assert_int_equal(u->map.part_status[3], LM_ERR_TABLE);
+    assert_true((u->flags & LM_FLAG_TILE) != 0);
+    assert_int_equal(patch_of(w), two);
+    goes(w, 3);
+    run(w->rig, 0.1);
+    assert_true((u->flags & LM_FLAG_TILE) == 0);
+    tell(w, 3, w->parts[2].bytes / 2); /* cut short */
+    run(w->rig, 0.1);
+    assert_int_equal(u->map.part_status[2], LM_ERR_CORRUPT);
+    goes(w, 2);
+    for (uint32_t at = 0; at < LM_DB_HEADER_BYTES; at += 13) { /* each byte of the header counts */
+        w->bytes[w->parts[2].offset + at] ^= 4;
+        comes(w, 2);
+        run(w->rig, 0.002);
+        w->bytes[w->parts[2].offset + at] ^= 4;
+        goes(w, 2);
+        run(w->rig, 0.002);
+        assert_int_equal(u->map.image_count, 2);
+    }
+    assert_int_equal(u->count.commands_refused, 0);
+    static const int32_t none[] = {1, 0, -1, IMAGES + 1, INT32_MIN, INT32_MAX};
+    for (uint32_t i = 0; i < sizeof none / sizeof *none; i++) {
+        tell(w, none[i], i % 2 * w->parts[1].bytes);
+        run(w->rig, 0.002);
+        assert_int_equal(u->count.commands_refused, i + 1);
+    }
+    assert_int_equal(patch_of(w), two);
+    end(w);
+}
+
+TEST(a_flash_that_hangs_while_an_image_comes_is_outlived)
+{
+    struct world *w = start(1);
+    const uint32_t one = patch_of(w);
+    command(w->rig, (struct lm_control){.kind = LM_CONTROL_DROP});
+    w->rig->board.flash.busy_polls = 1000000;
+    command(w->rig, patch);
+    run(w->rig, 0.1);
+    comes(w, 1);
+    run(w->rig, 0.1);
+    assert_int_equal(w->rig->unit.map.part_status[1], LM_ERR_IO);
+    w->rig->board.flash.busy_polls = 0;
+    w->rig->board.flash.now.polls_left = 0;
+    goes(w, 1);
+    run(w->rig, 0.1);
+    assert_int_equal(patch_of(w), one);
+    comes(w, 1);
+    run(w->rig, 0.1);
+    assert_int_equal(w->rig->unit.map.image_count, 2);
+    end(w);
+}
+
+TEST(after_a_storm_of_changes_the_picture_is_that_of_a_quiet_start)
+{
+    struct world *w = start(1);
+    srand(5);
+    w->rig->board.flash.fail_every = 17;
+    for (int i = 0; i < ROUNDS; i++) {
+        const uint32_t which = 1 + (uint32_t)rand() % (IMAGES - 1);
+        w->rig->board.flash.busy_polls = (uint32_t)rand() % 4;
+        if (rand() % 2) {
+            comes(w, which);
+        } else {
+            goes(w, which);
+        }
+        if (rand() % 6 == 0) {
+            command(w->rig, rand() % 2 ? patch_here : (struct lm_control){.kind = LM_CONTROL_DROP});
+        }
+        run(w->rig, 0.002 * (1 + rand() % 40));
+    }
+    w->rig->board.flash.fail_every = 0;
+    for (uint32_t i = 1; i < IMAGES; i++) {
+        goes(w, i);
+    }
+    run(w->rig, 2);
+    assert_int_equal(w->rig->unit.map.image_count, 1);
+    const uint32_t one = patch_of(w);
+    assert_int_equal(one, patch_of_start(1));
+    end(w);
+}
