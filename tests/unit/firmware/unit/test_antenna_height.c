@@ -4,7 +4,7 @@
 #include "hs/angle.h"
 #include "ownship.h"
 
-static struct lm_unit_map map = {.db = {.geoid_m_q6 = 48 * 64}};
+static struct lm_unit_map map = {.images = {{.geoid_m_q6 = 48 * 64}}, .image_count = 1};
 
 static struct lm_ownship at(double latitude_deg, double longitude_deg)
 {
@@ -17,19 +17,20 @@ static struct lm_ownship at(double latitude_deg, double longitude_deg)
 TEST(a_height_above_the_ellipsoid_is_less_by_the_geoid_of_the_header)
 {
     struct lm_ownship own = at(43, 7);
-    map.db.geoid.rows = 0;
+    map.images[0].geoid.rows = 0;
     assert_int_equal(lm_antenna_height_m_q6(&own, &map), (1000 - 48) * 64);
 }
 
 TEST(with_a_grid_it_is_less_by_the_geoid_of_the_place)
 {
-    map.db.geoid = (struct lm_geoid){.south = hs_bam(40),
-                                     .west = hs_bam(5),
-                                     .latitude_shift = 24,
-                                     .longitude_shift = 24,
-                                     .rows = 2,
-                                     .columns = 2,
-                                     .height_m_q6 = {{40 * 64, 50 * 64}, {40 * 64, 50 * 64}}};
+    map.images[0].geoid =
+        (struct lm_geoid){.south = hs_bam(40),
+                          .west = hs_bam(5),
+                          .latitude_shift = 24,
+                          .longitude_shift = 24,
+                          .rows = 2,
+                          .columns = 2,
+                          .height_m_q6 = {{40 * 64, 50 * 64}, {40 * 64, 50 * 64}}};
     struct lm_ownship west = at(40, 5), east = at(40, 7);
     assert_int_equal(lm_antenna_height_m_q6(&west, &map), (1000 - 40) * 64);
     assert_int_equal(lm_antenna_height_m_q6(&east, &map), (1000 - 50) * 64);
