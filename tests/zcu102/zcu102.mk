@@ -1,6 +1,6 @@
 # The board in QEMU. The images are built by a make of their own, for the board; these are the tools of the PC.
 ZCU102 := $(O)/bin/tests/zcu102
-ZCU102_TOOLS := $(addprefix $(ZCU102)/,golden_flash picture_checksum scenario cycles_plugin.so tile_order)
+ZCU102_TOOLS := $(addprefix $(ZCU102)/,golden_flash picture_checksum scenario cycles_plugin.so tile_order strides)
 ZCU102_TESTS := $(addprefix $(ZCU102)/,test_devices test_golden test_flight test_slots test_memory)
 TESTS += $(ZCU102_TESTS)
 $(O)/tests/zcu102/%.o: CFLAGS_host += -Itests/golden
@@ -17,6 +17,7 @@ $(CYCLES)/%.o: EXTRA_CFLAGS := -fPIC
 $(ZCU102)/cycles_plugin.so: $(CYCLES)/plugin.o $(CYCLES)/cache_model.o
 $(ZCU102)/cycles_plugin.so: LDFLAGS := -shared
 $(ZCU102)/tile_order: $(CYCLES)/tile_order.o $(CYCLES)/cache_model.o
+$(ZCU102)/strides: $(CYCLES)/strides.o $(CYCLES)/cache_model.o
 $(ZCU102)/test_cache_model: $(CYCLES)/test_cache_model.o $(CYCLES)/cache_model.o $(LIB_support) $(LIB_firmware) $(LIB_fixed)
 $(ZCU102)/test_cache_model: LDLIBS := -lcmocka
 TESTS += $(ZCU102)/test_cache_model $(ZCU102)/test_cycles

@@ -1,4 +1,6 @@
 """The estimate of cycles: its pipeline and its plugin on what is known, and what it says where something is missing."""
+import re
+import shutil
 import subprocess
 import sys
 from pathlib import Path
@@ -33,6 +35,26 @@ def pipeline(tap):
     tap.ok("a call takes what a jump takes: what is called is counted itself", calls < 250, calls)
     tap.ok("an instruction that is none is refused",
            says(lambda: cycles.ask_mca(["frobnicate x0"]), cycles.MCA, "frobnicate"))
+
+
+def cachegrind(program, rounds):
+    """Misses of data reads of a run: (of the first cache, of both)."""
+    out = subprocess.run(["valgrind", "--tool=cachegrind", "--cache-sim=yes", "--cachegrind-out-file=/dev/null",
+                          "--I1=32768,2,64", "--D1=32768,4,64", "--LL=1048576,16,64", program, "touch", str(rounds)],
+                         capture_output=True, text=True, check=True).stderr
+    return [int(re.search(rf"{name} +misses: +[\d,]+ +\( *([\d,]+) rd", out).group(1).replace(",", ""))
+            for name in ("D1", "LLd")]
+
+
+def caches(tap):
+    """The difference of two runs is what the rounds between them miss, without the program's beginning and end."""
+    program = machine.TOOLS / "strides"
+    model = [list(map(int, cycles.run([program, "model", rounds]).split())) for rounds in (1, 6)]
+    judge = [cachegrind(program, rounds) for rounds in (1, 6)]
+    for level, name in enumerate(("first cache", "both caches")):
+        ours, theirs = (runs[1][level] - runs[0][level] for runs in (model, judge))
+        tap.ok(f"{name} miss as cachegrind says, within a hundredth", abs(ours - theirs) <= theirs / 100, ours, theirs)
+        tap.note(f"{name}: {ours} misses of 100,000 reads, by cachegrind {theirs}")
 
 
 def image(tap):
@@ -75,12 +97,14 @@ def plugin_says(plan, *words):
 
 def main():
     tap = Tap()
-    why = machine.missing()
+    lacking = [tool for tool in (cycles.MCA, cycles.OBJDUMP, "valgrind") if shutil.which(tool) is None]
+    why = machine.missing() or (f"{lacking[0]} is not installed (make deps)" if lacking else None)
     if why:
         tap.skip("the cycles of a flight can be estimated", why)
         return tap.end()
     WORK.mkdir(parents=True, exist_ok=True)
     pipeline(tap)
+    caches(tap)
     plan = image(tap)
     start(tap)
     tap.ok("the plugin refuses a plan with a line that is none", plugin_says("nonsense 1 2\n", "wrong", "nonsense"))
