@@ -53,7 +53,7 @@ def caches(tap):
     judge = [cachegrind(program, rounds) for rounds in (1, 6)]
     for level, name in enumerate(("first cache", "both caches")):
         ours, theirs = (runs[1][level] - runs[0][level] for runs in (model, judge))
-        tap.ok(f"{name} miss as cachegrind says, within a hundredth", abs(ours - theirs) <= theirs / 100, ours, theirs)
+        tap.ok(f"{name} miss as cachegrind says, within a thousandth", abs(ours - theirs) <= theirs / 1000, ours, theirs)
         tap.note(f"{name}: {ours} misses of 100,000 reads, by cachegrind {theirs}")
 
 
