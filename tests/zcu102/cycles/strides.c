@@ -1,5 +1,5 @@
 /* One pattern of reads, for the model of the caches and for cachegrind, which judges it: rows, a
- * column of 264 bytes a step, and places at random, over 2 MiB.
+ * column of 264 bytes a step, places at random, and places used again between others, over 2 MiB.
  *
  *   strides touch ROUNDS     reads memory
  *   strides model ROUNDS     prints the model's misses of the first cache and of both */
@@ -10,7 +10,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { BYTES = 2 << 20, STEPS = 20000, ROW_BYTES = 264 };
+enum { BYTES = 2 << 20, STEPS = 20000, ROW_BYTES = 264, USED_AGAIN_BYTES = 24 << 10 };
 
 static _Alignas(1 << 16) volatile uint8_t memory[BYTES];
 
@@ -18,13 +18,15 @@ static _Alignas(1 << 16) volatile uint8_t memory[BYTES];
 static uint32_t place(uint32_t i, uint32_t *random)
 {
     *random = *random * 1664525u + 1013904223u;
-    switch (i / 500 % 3) {
+    switch (i / 2500 % 4) {
     case 0:
         return i * 4 % BYTES;
     case 1:
         return i * ROW_BYTES % BYTES;
-    default:
-        return (*random >> 8) % (i / 1500 % 2 ? BYTES : 48 << 10);
+    case 2:
+        return (*random >> 8) % BYTES;
+    default: /* what is used again, between what is not */
+        return i % 2 ? (*random >> 8) % USED_AGAIN_BYTES : i * 32 % BYTES;
     }
 }
 
