@@ -141,10 +141,10 @@ static uint8_t judge(struct db_mixtures *m, const struct db_mixtures_block *b, i
     int counts[DB_CLASS_MAX];
     struct fit best = {INFINITY, b->classes[at]};
     find_means(m, b, x, y, counts);
-    for (uint8_t a = 0; a < DB_CLASS_MAX; a++) {
-        for (uint8_t c = (uint8_t)(a + 1); counts[a] > 0 && c < DB_CLASS_MAX; c++) {
+    for (int a = 0; a < DB_CLASS_MAX; a++) {
+        for (int c = a + 1; counts[a] > 0 && c < DB_CLASS_MAX; c++) {
             if (counts[c] > 0) {
-                try_pair(m, b->planes + at, plane, a, c, b->classes[at], &best);
+                try_pair(m, b->planes + at, plane, (uint8_t)a, (uint8_t)c, b->classes[at], &best);
             }
         }
     }
