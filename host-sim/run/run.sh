@@ -18,12 +18,15 @@ say "The built-in scene: image, terrain, exemplars (build/run/scene)"
 "$bin"/landmass-scene --out $out/surroundings --size 1000 --cell 50
 
 say "Train the network on the photo-analyst's exemplars, a third of the polygons held out"
+# Shares between equal and those of the ground: about their square roots (docs/classifier.md, "Towns").
 "$bin"/landmass-db train --image $out/scene/image.tif --exemplars $out/scene/exemplars.geojson \
-    --classes $classes --net $out/scene.net --hold-out polygons:0.33 --report $out/training
+    --classes $classes --net $out/scene.net --hold-out polygons:0.33 --report $out/training --loss cross-entropy \
+    --priors soil=0.15,asphalt=0.07,concrete=0.05,structure=0.07,vegetation=0.4,water=0.26
 
 say "Segment the whole image"
 "$bin"/landmass-db segment --image $out/scene/image.tif --net $out/scene.net --classes $classes \
     --exemplars $out/scene/exemplars.geojson --report $out/segmentation \
+    --spare structure \
     --out $out/classes.tif --picture $out/classes.png
 
 say "Assign reflectivity"
