@@ -8,7 +8,7 @@ import subprocess
 
 import machine
 from cases import case, expect, main
-from fixtures import WORK, database, log, public_key
+from fixtures import HOST, WORK, database, log, public_key
 from machine import FOLDER, Machine
 from panel import BEZEL, GPIO, RELEASED, Panel, fly, is_fine
 
@@ -39,6 +39,14 @@ class Service(Panel):
         self.machine.until("[ $(systemctl is-active landmass-panel) = active ]", limit_s)
 
 
+def newer():
+    """The sound database, signed with the next serial number; its path."""
+    path = os.path.join(WORK, "newer.lmdb")
+    subprocess.run([os.path.join(HOST, "landmass-db"), "sign", "--key", os.path.join(WORK, "signing.pem"), "--serial", "2",
+                    os.path.join(WORK, "small-plain.lmdb"), path], check=True, stdout=subprocess.DEVNULL)
+    return path
+
+
 def boot():
     top = os.path.join(WORK, "tree-systemd")
     shutil.rmtree(top, ignore_errors=True)
@@ -46,7 +54,7 @@ def boot():
     os.makedirs(os.path.join(top, "t"))
     deb = max(glob.glob("build/packages/landmass-panel_*_arm64.deb"), key=os.path.getmtime)
     shutil.copy(deb, os.path.join(top, "t", "landmass-panel.deb"))
-    for path in (log("still"), database("small"), public_key()):
+    for path in (log("still"), database("small"), newer(), public_key()):
         shutil.copy(path, os.path.join(top, "t"))
     disk = "file=%s,if=none,id=disk,format=raw,snapshot=on" % os.path.abspath(os.path.join(DISK, "disk.img"))
     return Machine(tree=top, memory_mb=512, limit_s=880, devices=[
@@ -153,6 +161,22 @@ def checked_alone(m):
     for words in ("can: vcan0: is down; ip link set", "record: /var/lib/landmass-panel/recordings: Permission denied",
                   "no screen is connected", "key: OSB7"):
         expect(words in said, words, said)
+
+
+@case("the service for a PC over USB takes a database as the panel's user, beside the panel; stopped, it leaves no device behind")
+def over_usb(m):
+    m.do("modprobe -a dummy_hcd libcomposite usb_f_fs; systemctl start landmass-load-usb")
+    m.until("grep -qsx 'Cockpit panel' /sys/bus/usb/devices/*/product")
+    pid = m.do("systemctl show -P MainPID landmass-load-usb")
+    expect(m.do("ps -o user:20= -p " + pid).strip() == "landmass-panel", pid)
+    code, said = m.sh("landmass-load send /t/newer.lmdb 2>&1", limit_s=400)
+    journal = m.do("journalctl --no-pager -o cat -u landmass-load-usb")
+    expect(code == 0 and "slot A: whole, load 1, flown next; slot B: " in said and "slot B: load 2;" in said, said, journal)
+    expect("slot B: load 2" in journal, journal)
+    m.do("systemctl stop landmass-load-usb")
+    expect(m.do("systemctl show -P Result landmass-load-usb") == "success")
+    expect(m.sh("ls /sys/kernel/config/usb_gadget/landmass /run/landmass-usb 2>/dev/null")[1] == "", "the gadget is still there")
+    Service(m).until(is_fine)
 
 
 @case("systemctl stop ends it, the lamps dark; started by hand it tells no restart")

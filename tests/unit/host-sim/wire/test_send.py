@@ -120,6 +120,7 @@ def the_panel_refuses_what_it_may_not_fly_and_writes_nothing():
         for name, words in (("plain", "is not signed"), ("image1", "its serial number is 1, and 2 was flown")):
             said, _ = send(name, code=1)
             assert "the panel: " in said and words in said, said
+        assert [s["state"] for s in slots()] == ["absent", "absent"]
         assert "slot A: load 1;" in send("image3")[0]
         damaged[len(damaged) // 2] ^= 1
         with open(here("damaged"), "wb") as file:

@@ -327,6 +327,32 @@ TEST_WITH(answers_that_are_not_to_the_question_end_the_session, set_up, NULL)
     }
 }
 
+/* Eight bytes as an answer, by hand. */
+static void answer(struct both *b, uint64_t session, uint64_t offset, const char *text)
+{
+    static uint8_t payload[WIRE_BLOCK_BYTES];
+    struct wire_message m = {
+        .kind = WIRE_DATA, .session = session, .offset = offset, .bytes = 8, .payload_bytes = 8};
+    memcpy(payload, text, 8);
+    assert_int_equal(wire_send(&b->socket.link, &m, payload, ANSWER_MS), 0);
+}
+
+TEST_WITH(bytes_of_another_place_or_session_are_not_taken, set_up, NULL)
+{
+    struct both *b = begin();
+    char eight[9] = "";
+    say(b, (struct wire_message){.version = 1, .kind = WIRE_OFFER, .session = 9, .bytes = 100});
+    assert_int_equal(wire_panel_wait(&b->panel), 0);
+    answer(b, 8, 16, "another!");
+    answer(b, 9, 16, "this one");
+    assert_int_equal(lm_db_read(&b->panel.port, 16, eight, 8, 1), LM_OK);
+    assert_string_equal(eight, "this one");
+    answer(b, 9, 17, "misplace");
+    assert_int_equal(lm_db_read(&b->panel.port, 16, eight, 8, 1), LM_ERR_IO);
+    assert_int_equal(b->panel.cause, EPROTO);
+    stop(b);
+}
+
 TEST_WITH(what_is_left_of_an_earlier_session_is_passed_over, set_up, NULL)
 {
     struct both *b = begin();
