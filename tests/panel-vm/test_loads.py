@@ -156,7 +156,8 @@ def usb(m):
     m.qmp("device_add", driver="usb-storage", id="stick0", bus="xhci.0", drive="stick")
     m.until("[ -b /dev/sda ]")
     unit = m.do("cat /lib/systemd/system/landmass-load@.service")
-    steps = [re.search("^%s=[-+]*(.*)$" % name, unit, re.M).group(1).replace("%I", "sda").replace("%i", "sda")
+    steps = [re.search("^%s=[-+]*(.*)$" % name, unit, re.M).group(1).replace("nsenter --target 1 --mount ", "")
+             .replace(",X-mount.mkdir", "").replace("%I", "sda").replace("%i", "sda")
              for name in ("ExecStartPre", "ExecStart", "ExecStopPost")]
     m.do("mkdir -p /run/landmass-load/sda; %s" % steps[0].replace("-o ro", "-t ext4 -o ro"))
     m.do("%s --config /tmp/load.conf" % steps[1], 300)

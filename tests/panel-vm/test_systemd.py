@@ -165,7 +165,7 @@ def checked_alone(m):
 
 @case("the service for a PC over USB takes a database as the panel's user, beside the panel; stopped, it leaves no device behind")
 def over_usb(m):
-    m.do("modprobe -a dummy_hcd libcomposite usb_f_fs; systemctl start landmass-load-usb")
+    m.do("modprobe -d /usr -a dummy_hcd libcomposite usb_f_fs; systemctl start landmass-load-usb")
     m.until("grep -qsx 'Cockpit panel' /sys/bus/usb/devices/*/product")
     pid = m.do("systemctl show -P MainPID landmass-load-usb")
     expect(m.do("ps -o user:20= -p " + pid).strip() == "landmass-panel", pid)
