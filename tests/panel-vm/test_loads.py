@@ -186,9 +186,10 @@ def plug(m):
 
 
 def pull_while_sending(m, number, how):
-    """Begin to send, and let that happen when the slot is being written."""
+    """Begin to send, and let that happen when the first piece is in the slot."""
     m.do("rm -f /slots/b*; landmass-load send /t/load%d.lmdb >/tmp/sent 2>&1 & pid=$!; "
-         "until [ -e /slots/b.state ]; do [ -d /proc/$pid ] || break; done; usleep 10000; %s; wait $pid; true" % (number, how))
+         "until head -c 4 /slots/b 2>/dev/null | grep -q LAND; do [ -d /proc/$pid ] || break; done; %s; wait $pid; true" %
+         (number, how))
     return m.do("cat /tmp/sent")
 
 
