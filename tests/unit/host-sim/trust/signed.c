@@ -90,14 +90,9 @@ void signed_repair(uint8_t *bytes)
  * no gap behind it, and that one has a type of a later version. */
 static void write_image(void)
 {
-    static const uint32_t types[] = {LM_IMAGE_TARGETS,
-                                     LM_IMAGE_SIGNATURES,
-                                     LM_IMAGE_GEOID,
-                                     LM_IMAGE_DETAIL,
-                                     LM_IMAGE_RADAR,
-                                     LM_IMAGE_BUS,
-                                     LM_IMAGE_GEOID_PAGES,
-                                     77};
+    static const uint32_t types[] = {
+        LM_IMAGE_TARGETS, LM_IMAGE_SIGNATURES, LM_IMAGE_GEOID,       LM_IMAGE_DETAIL,
+        LM_IMAGE_RADAR,   LM_IMAGE_BUS,        LM_IMAGE_GEOID_PAGES, 77};
     const struct tiny_spec spec = tiny_spec_at(46, 11);
     struct tiny_image image;
     uint8_t bytes[700];
