@@ -49,39 +49,34 @@ static double worse(double worst, double error)
     return fabs(error) > worst ? fabs(error) : worst;
 }
 
-/* Each angle of the first quadrant with its three mirror images, which are all angles. */
-static void sine_q30(void)
+/* Each angle of the first quadrant with its three mirror images, which are all angles; `one` is the
+ * sine of 90 degrees. */
+static void sine(const char *what, int32_t (*sine_of)(fx_bam_t), int32_t one, double most,
+                 const char *unit)
 {
     bool is_so = true;
     double worst = 0;
     EACH(x, FX_BAM_90 + 1ull)
     {
         const fx_bam_t a = (fx_bam_t)x;
-        const int32_t sine = fx_sin_q30(a);
-        is_so = is_so && sine >= 0 && sine <= 1 << 30 && fx_sin_q30(0u - a) == -sine &&
-                fx_sin_q30(FX_BAM_180 - a) == sine && fx_sin_q30(FX_BAM_180 + a) == -sine;
+        const int32_t s = sine_of(a);
+        is_so = is_so && s >= 0 && s <= one && sine_of(0u - a) == -s &&
+                sine_of(FX_BAM_180 - a) == s && sine_of(FX_BAM_180 + a) == -s;
         if (is_measured(x)) {
-            worst = worse(worst, sine - sin(a * pi / 0x1p31) * 0x1p30);
+            worst = worse(worst, s - sin(a * pi / 0x1p31) * one);
         }
     }
-    tell("fx_sin_q30", is_so && worst < 0.77, worst, "2^-30");
+    tell(what, is_so && worst < most, worst, unit);
+}
+
+static void sine_q30(void)
+{
+    sine("fx_sin_q30", fx_sin_q30, 1 << 30, 0.77, "2^-30");
 }
 
 static void sine_q15(void)
 {
-    bool is_so = true;
-    double worst = 0;
-    EACH(x, FX_BAM_90 + 1ull)
-    {
-        const fx_bam_t a = (fx_bam_t)x;
-        const int32_t sine = fx_sin_q15(a);
-        is_so = is_so && sine >= 0 && sine <= 32768 && fx_sin_q15(0u - a) == -sine &&
-                fx_sin_q15(FX_BAM_180 - a) == sine && fx_sin_q15(FX_BAM_180 + a) == -sine;
-        if (is_measured(x)) {
-            worst = worse(worst, sine - sin(a * pi / 0x1p31) * 0x1p15);
-        }
-    }
-    tell("fx_sin_q15", is_so && worst < 0.59, worst, "2^-15");
+    sine("fx_sin_q15", fx_sin_q15, 32768, 0.59, "2^-15");
 }
 
 /* It rises from -90 to 90 degrees, and is odd but at the poles. */

@@ -153,12 +153,17 @@ def record(modes, first_picture_us):
     figures.record("bench-zcu102", rows + [(first_picture_us, "us", "reset to first picture, the guest's time")])
 
 
-def main():
-    options = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+def read_options(description):
+    """The command line of a flight to count."""
+    options = argparse.ArgumentParser(description=description, formatter_class=argparse.RawDescriptionHelpFormatter)
     for name in ("db", "bus", "script", "out"):
         options.add_argument(f"--{name}", required=True)
     options.add_argument("--seconds", type=float, required=True)
-    o = options.parse_args()
+    return options.parse_args()
+
+
+def main():
+    o = read_options(__doc__)
     why = machine.missing()
     if why:
         print(f"bench: {why}", file=sys.stderr)

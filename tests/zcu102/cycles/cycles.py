@@ -5,7 +5,6 @@
 QEMU flies bench.elf with the plugin of this folder, which counts instructions, misses of the caches' model, and records
 samples of what is executed, by mode and stage. llvm-mca runs those samples through its model of the pipeline. The
 figures are the same in each run. docs/zcu102.md says what they do not hold."""
-import argparse
 import os
 import re
 import subprocess
@@ -319,11 +318,7 @@ def print_loops(code, rows, elf):
 
 
 def main():
-    options = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    for name in ("db", "bus", "script", "out"):
-        options.add_argument(f"--{name}", required=True)
-    options.add_argument("--seconds", type=float, required=True)
-    o = options.parse_args()
+    o = bench.read_options(__doc__)
     why = machine.missing()
     elf = machine.BUILD / "bench.elf"
     try:

@@ -1,5 +1,6 @@
 /* Coherent sum and complex chips, against cross sections and responses of the textbooks. */
 #include "check.h"
+#include "metal.h"
 #include "shapes.h"
 #include "tracer/coherent.h"
 #include "tracer/focus.h"
@@ -11,17 +12,6 @@
 
 static const double pi = 3.14159265358979323846;
 static const double lambda = TRACE_WAVELENGTH_M;
-
-/* One material that reflects everything and scatters nothing. */
-static struct reflect_law metal_law(enum reflect_kind kind)
-{
-    struct reflect_law law = {.kind = kind, .wavelength_m = lambda};
-    for (int i = 0; i < TRACE_MATERIALS_MAX; i++) {
-        law.materials[i] = (struct reflect_material){
-            .name = "metal", .permittivity = 1, .loss = 1e12, .specular = 1, .roughness = 1};
-    }
-    return law;
-}
 
 /* Looks from ahead; without ground. The mesh is freed. */
 static struct trace_records traced(struct mesh *m, double depression_deg, double cell_m,

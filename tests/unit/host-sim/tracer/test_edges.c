@@ -1,5 +1,6 @@
 /* Diffraction by edges, against the textbook's plate and what Ufimtsev's waves must keep. */
 #include "check.h"
+#include "metal.h"
 #include "shapes.h"
 #include "tracer/edges.h"
 #include "tracer/trace.h"
@@ -10,16 +11,6 @@
 static const double pi = 3.14159265358979323846;
 static const double lambda = TRACE_WAVELENGTH_M;
 static const struct trace_look look = {0, 30, TRACE_WAVELENGTH_M};
-
-static struct reflect_law metal_law(enum reflect_kind kind)
-{
-    struct reflect_law law = {.kind = kind, .wavelength_m = lambda};
-    for (int i = 0; i < TRACE_MATERIALS_MAX; i++) {
-        law.materials[i] = (struct reflect_material){
-            .name = "metal", .permittivity = 1, .loss = 1e12, .specular = 1, .roughness = 1};
-    }
-    return law;
-}
 
 static void assert_near(double found, double expected, double most)
 {
