@@ -231,12 +231,8 @@ bool further_next(struct further *f, struct lm_control *control)
 /* Whether the unit still has the image of a place. */
 static bool is_held(const struct lm_unit *unit, uint32_t i)
 {
-    for (uint32_t k = 0; k < unit->map.image_count; k++) {
-        if (unit->map.images[k].base == (uint64_t)(i + 1) << DRV_FLASH_JOINED_LOG2) {
-            return true;
-        }
-    }
-    return false;
+    const uint64_t offset = (uint64_t)(i + 1) << DRV_FLASH_JOINED_LOG2;
+    return lm_unit_map_image_from(&unit->map, offset) < unit->map.image_count;
 }
 
 static void let_go(struct further *f, const struct lm_unit *unit, uint32_t i)

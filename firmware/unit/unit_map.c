@@ -176,8 +176,7 @@ int lm_unit_map_open(struct lm_unit_map *m, const struct lm_unit_map_lent *lent)
     return open_tiles(m, lent);
 }
 
-/* Number of the image that begins there, or image_count. */
-static uint32_t image_from(const struct lm_unit_map *m, uint64_t offset)
+uint32_t lm_unit_map_image_from(const struct lm_unit_map *m, uint64_t offset)
 {
     uint32_t i = 0;
     while (i < m->image_count && m->images[i].base != offset) {
@@ -188,7 +187,7 @@ static uint32_t image_from(const struct lm_unit_map *m, uint64_t offset)
 
 static void take_out(struct lm_unit_map *m, uint64_t offset)
 {
-    uint32_t i = image_from(m, offset);
+    uint32_t i = lm_unit_map_image_from(m, offset);
     if (i < m->image_count) {
         m->image_count--;
     }
@@ -218,7 +217,7 @@ int lm_unit_map_mount(struct lm_unit_map *m, uint32_t place, const struct lm_fla
     m->part_status[place] = part->bytes == 0 ? LM_OK
                             : is_drained     ? open_further(m, part, poll_limit)
                                              : LM_ERR_IO;
-    m->db = m->images[image_from(m, m->db.base)];
+    m->db = m->images[lm_unit_map_image_from(m, m->db.base)];
     lm_images_view(&m->db, m->images, m->image_count);
     m->geoid = (struct lm_geoid_reader){.corrupt = m->geoid.corrupt};
     lm_tile_cache_mount(&m->tiles, m->images, m->image_count);

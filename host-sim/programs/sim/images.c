@@ -58,17 +58,6 @@ static const char *state_of(int status, bool is_flown)
                                       : "not usable";
 }
 
-/* The one whose part of the flash begins there, or NULL. */
-static const struct lm_db *image_from(const struct lm_unit_map *map, uint64_t base)
-{
-    for (uint32_t i = 0; i < map->image_count; i++) {
-        if (map->images[i].base == base) {
-            return &map->images[i];
-        }
-    }
-    return NULL;
-}
-
 void images_report(const struct images *images, const struct lm_unit_map *map,
                    const struct lm_flash_part *parts)
 {
@@ -77,7 +66,8 @@ void images_report(const struct images *images, const struct lm_unit_map *map,
         if (!images->path[i]) {
             continue;
         }
-        const struct lm_db *const image = image_from(map, parts[i].offset);
+        const uint32_t number = lm_unit_map_image_from(map, parts[i].offset);
+        const struct lm_db *const image = number < map->image_count ? &map->images[number] : NULL;
         hs_report_object(NULL);
         hs_report_integer("place", i + 1);
         hs_report_text("path", images->path[i]);

@@ -82,6 +82,9 @@ void lm_unit_map_look(struct lm_unit_map *m, struct lm_position place, uint32_t 
 /* Height of mean sea level above the ellipsoid at a place, metres * 64. */
 int32_t lm_unit_map_geoid_m_q6(const struct lm_unit_map *m, struct lm_position place);
 
+/* Number in `images` of the one that begins at an offset of the flash; image_count: none does. */
+uint32_t lm_unit_map_image_from(const struct lm_unit_map *m, uint64_t offset);
+
 /* An image has come to a place of the board's, 1..LM_IMAGES_MAX - 1, in a part of the flash where
  * none was; or the one that is there goes, for a part of no bytes. Waits for the flash: what is
  * being read ends first. Tiles of all images leave the cache. part_status tells whether the image
