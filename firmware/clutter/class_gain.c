@@ -2,11 +2,8 @@
 
 #include "fx/log.h"
 #include "fx/sat.h"
-#include "lm/kernels_clutter.h"
 
 enum { SEA_STATE_STEP_DB_Q8 = LM_DB_Q8(5) }; /* Nathanson: -40 dB in state 3, -30 dB in state 5 */
-
-_Static_assert((int)LM_DB_CLASSES == LM_K_CODES, "as many classes as lm/kernels_clutter.h has");
 
 /* Lobe of walls whose direction is `off` from the line of sight, before it is normalised:
  * 2^(-(off / half)^2) in Q16. Angles are at most 2^29 and halves above 2^25: quotients are at most
@@ -56,8 +53,8 @@ void lm_class_gain_look(struct lm_class_gain *g, fx_bam_t azimuth)
     for (uint32_t i = 0; i < LM_DB_CLASSES; i++) {
         if (g->facing[i] != 0) {
             const fx_bam_t wall = (g->facing[i] - 1u) * (FX_BAM_90 / LM_FACINGS);
-            g->of_class_db_q8[i] = fx_min_i32(g->unfaced_db_q8[i] + lobe_db_q8(g, azimuth - wall),
-                                              LM_CLASS_GAIN_MAX_DB_Q8);
+            const int32_t faced_db_q8 = g->unfaced_db_q8[i] + lobe_db_q8(g, azimuth - wall);
+            g->of_class_db_q8[i] = (int16_t)fx_min_i32(faced_db_q8, LM_CLASS_GAIN_MAX_DB_Q8);
         }
     }
 }
@@ -68,7 +65,7 @@ void lm_class_gain_set(struct lm_class_gain *g, const struct lm_facing_config *f
 {
     const int32_t above = fx_min_i32(sea_state, LM_SEA_STATE_MAX) - LM_SEA_STATE_OF_IMAGE;
     const int32_t off_db_q8 = fx_min_i32(loss_db_q8, LM_CLUTTER_LOSS_MAX_DB_Q8);
-    g->is_any = g->is_faced = false;
+    g->is_faced = false;
     for (uint32_t i = 0; i < LM_DB_CLASSES; i++) {
         const uint8_t kind = classes->entry[i].kind & (LM_KINDS - 1);
         const int32_t sea_db_q8 = kind == LM_KIND_WATER ? above * SEA_STATE_STEP_DB_Q8 : 0;
@@ -76,21 +73,11 @@ void lm_class_gain_set(struct lm_class_gain *g, const struct lm_facing_config *f
         g->unfaced_db_q8[i] =
             fx_clamp_i32(sea_db_q8 + lod_db_q8, -LM_CLASS_GAIN_MAX_DB_Q8, LM_CLASS_GAIN_MAX_DB_Q8) -
             off_db_q8;
-        g->of_class_db_q8[i] = g->unfaced_db_q8[i];
+        g->of_class_db_q8[i] = (int16_t)g->unfaced_db_q8[i];
         g->facing[i] = classes->entry[i].facing;
         g->is_faced |= g->facing[i] != 0;
-        g->is_any |= g->unfaced_db_q8[i] != 0;
     }
-    g->is_any |= g->is_faced;
     if (g->is_faced) {
         set_lobe(g, facing);
-    }
-}
-
-void lm_class_gain_run(const struct lm_class_gain *g, const uint32_t *cell, int32_t *level_db_q8,
-                       uint32_t cells)
-{
-    if (g->is_any) {
-        lm_k_class_gain(g->of_class_db_q8, cell, level_db_q8, cells);
     }
 }

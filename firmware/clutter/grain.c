@@ -51,7 +51,7 @@ static struct lm_k_curve kernel_curve(const struct lm_grain_curve *curve)
 }
 
 void lm_grain_run(const struct lm_grain_curve *curve, struct lm_grain_place place,
-                  int32_t *level_db_q8, uint32_t cells)
+                  int16_t *level_db_q8, uint32_t cells)
 {
     int8_t grain_q5[LM_CELLS_ROOM];
     const struct lm_k_curve lines = kernel_curve(curve);
@@ -60,7 +60,7 @@ void lm_grain_run(const struct lm_grain_curve *curve, struct lm_grain_place plac
 }
 
 void lm_grain_floor_run(const struct lm_grain_curve *curve, struct lm_grain_place place,
-                        int32_t floor_db_q8, const int32_t *level_db_q8, int32_t *speckled_db_q8,
+                        int32_t floor_db_q8, const int16_t *level_db_q8, int16_t *speckled_db_q8,
                         uint32_t cells)
 {
     int8_t grain_q5[LM_CELLS_ROOM];
@@ -90,7 +90,7 @@ void lm_grain_powers(const struct lm_grain_curve *curve, const struct lm_grain_s
                      uint32_t *power_q24, uint32_t cells)
 {
     int8_t column_q5[LM_CELLS_ROOM + LM_K_GRAIN_BEHIND], grain_q5[LM_CELLS_ROOM];
-    int32_t *const level_db_q8 = (int32_t *)power_q24; /* in place */
+    int16_t level_db_q8[LM_CELLS_ROOM];
     const struct lm_k_curve lines = kernel_curve(curve);
     const bool is_stretched = stretch->step_q16 < 65536;
     mix_rows(stretch, column_q5, cells + 1);
@@ -99,5 +99,5 @@ void lm_grain_powers(const struct lm_grain_curve *curve, const struct lm_grain_s
     }
     memset(level_db_q8, 0, (cells + GROUP - 1) / GROUP * GROUP * sizeof *level_db_q8);
     lm_k_grain_add(&lines, is_stretched ? grain_q5 : column_q5, level_db_q8, cells);
-    lm_k_powers_of_levels(power_q24, cells);
+    lm_k_powers_of_levels(level_db_q8, power_q24, cells);
 }

@@ -7,7 +7,8 @@
 #include "lm/units.h"
 #include "tops.h"
 
-_Static_assert((int)LM_CLASS_LUT_CODES == LM_K_CODES && (int)LM_LIT_SCRATCH >= LM_K_LIGHT_WORK,
+_Static_assert((int)LM_CLASS_LUT_CODES == LM_K_CODES && (int)LM_DB_CLASSES == LM_K_CODES &&
+                   (int)LM_LIT_SCRATCH >= LM_K_LIGHT_WORK,
                "lm/illumination.h has what lm/kernels_clutter.h wants");
 
 enum { GRAZING_MIN_Q24 = 1 << 16 /* 1/256 */ };
@@ -44,7 +45,8 @@ static void set_cell(struct lm_range_grid *g, uint32_t i, uint32_t range_m_q8, i
     const uint32_t before_m_q8 = i == g->first ? range_m_q8 : range_m_q8 - g->cell_m_q8;
     const int32_t log2_q16 = fx_log2_q16(before_m_q8) + scale_q16 -
                              fx_log2_q16_u64((uint64_t)grazing_q24(g, i, before_m_q8));
-    g->gain_db_q8[i] = fx_db_q8_of_log2_q16(log2_q16) + LM_GAMMA_CODE_ZERO_DB_Q8;
+    const int32_t gain_db_q8 = fx_db_q8_of_log2_q16(log2_q16) + LM_GAMMA_CODE_ZERO_DB_Q8;
+    g->gain_db_q8[i] = fx_sat_i16(gain_db_q8 - LM_LEVEL_SHADOW);
 }
 
 /* First cell that is at LM_RANGE_MIN_M and at half the antenna's height, or beyond. `cells` if none
@@ -78,8 +80,8 @@ void lm_range_grid_set(struct lm_range_grid *g, const struct lm_illumination_con
         fx_max_u32(first_m_q8 + g->first * cell_m_q8, LM_M_Q8(LM_RANGE_MIN_M));
     g->tangent_bits = (uint32_t)(31 - fx_clz32(nearest_m_q8)) + 6;
     for (uint32_t i = 0; i < g->first; i++) {
-        g->fall_m_q14[i] = g->inverse_range[i] = g->gain_db_q8[i] =
-            0; /* read by kernels, not displayed */
+        g->fall_m_q14[i] = g->inverse_range[i] = 0; /* read by kernels, not displayed */
+        g->gain_db_q8[i] = 0;
     }
     const int32_t scale_q16 = (24 - (int32_t)g->tangent_bits) * 65536 - fx_log2_q16(cell_m_q8);
     for (uint32_t i = g->first; i < cells; i++) {
@@ -142,12 +144,15 @@ static int32_t first_tangent(const struct lm_range_grid *grid, const struct lm_c
 
 lm_horizon_q40_t lm_illuminate(const struct lm_range_grid *grid,
                                const struct lm_class_lut *class_lut,
+                               const struct lm_class_gain *class_gain,
                                const struct lm_scan_line *line, lm_horizon_q40_t horizon,
                                struct lm_lit_line *lit)
 {
+    static const int16_t none_db_q8[LM_K_CODES] = {0};
     const struct lm_k_lit_line kernel_line = {
         .tops = tops_of(grid, class_lut, line),
         .gain_db_q8 = grid->gain_db_q8,
+        .class_gain_db_q8 = class_gain ? class_gain->of_class_db_q8 : none_db_q8,
         .mark_of_class = class_lut->mark,
         .edge_structure_db_q3 = class_lut->edge_structure_db_q3,
         .edge_trees_db_q3 = class_lut->edge_trees_db_q3,

@@ -34,8 +34,8 @@ void lm_layover_set(struct lm_layover *l, const struct lm_classes *classes,
     }
 }
 
-int32_t *lm_layover_run(const struct lm_layover *l, const struct lm_scan_line *ground,
-                        int32_t *level_db_q8, int32_t *laid_db_q8)
+int16_t *lm_layover_run(const struct lm_layover *l, const struct lm_scan_line *ground,
+                        int16_t *level_db_q8, int16_t *laid_db_q8)
 {
     const struct lm_k_layover line = {.cell = ground->cell,
                                       .elevation_m_q14 = ground->elevation_m_q14,
@@ -44,7 +44,7 @@ int32_t *lm_layover_run(const struct lm_layover *l, const struct lm_scan_line *g
                                       .reference_m_q14 = l->reference_m_q14,
                                       .sixteenths_q31 = l->sixteenths_q31,
                                       .height_sixteenths = l->height_sixteenths};
-    int32_t *const shown_db_q8 = laid_db_q8 + LM_K_LAYOVER_MARGIN;
+    int16_t *const shown_db_q8 = laid_db_q8 + LM_K_LAYOVER_MARGIN;
     for (uint32_t i = line.cells; i % 16 != 0; i++) {
         level_db_q8[i] = LM_LEVEL_SHADOW;
     }

@@ -105,7 +105,7 @@ void lm_sea_look(struct lm_sea *s, fx_bam_t azimuth)
     s->even_db_q8 = s->has_wind ? wind_at_db_q8(s, azimuth - s->wind_from) : 0;
 }
 
-void lm_sea_run(const struct lm_sea *s, const uint32_t *cell, int32_t *level_db_q8)
+void lm_sea_run(const struct lm_sea *s, const uint32_t *cell, int16_t *level_db_q8)
 {
     const uint32_t from = s->even_db_q8 != 0 ? 0 : s->first / GROUP * GROUP;
     if (from < s->cells && s->water != 0) {

@@ -46,12 +46,14 @@ int32_t lm_antenna_auto_tilt(int32_t height_m, uint32_t range_m)
  */
 static void weigh(const int32_t *restrict tangent, uint32_t cells, uint32_t down,
                   struct lm_antenna_fan fan, const int32_t *restrict gain_db_q8,
-                  int32_t *restrict level_db_q8)
+                  int16_t *restrict level_db_q8)
 {
     for (uint32_t i = 0; i < cells; i++) {
         const int32_t t_q20 = tangent[i] >> down;
         const int32_t off_q20 = fx_max_i32(t_q20 - fan.high_q20, fan.low_q20 - t_q20);
-        level_db_q8[i] += gain_db_q8[fx_min_i32(off_q20 >> 9, LM_ANTENNA_PATTERN_STEPS - 1)];
+        const int32_t fall_db_q8 =
+            gain_db_q8[fx_min_i32(off_q20 >> 9, LM_ANTENNA_PATTERN_STEPS - 1)];
+        level_db_q8[i] = fx_sat_i16(level_db_q8[i] + fall_db_q8);
     }
 }
 

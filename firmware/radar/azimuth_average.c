@@ -19,21 +19,21 @@ int32_t lm_azimuth_average_offset(fx_bam_t spacing, uint32_t azimuths_log2, uint
     return (int32_t)((int64_t)from_left - spacing / 2);
 }
 
-void lm_azimuth_average_begin(struct lm_azimuth_average *f, const int32_t *level_db_q8,
+void lm_azimuth_average_begin(struct lm_azimuth_average *f, const int16_t *level_db_q8,
                               uint32_t cells)
 {
     memcpy(f->sum_db_q8, level_db_q8, cells * sizeof *level_db_q8);
 }
 
-void lm_azimuth_average_add(struct lm_azimuth_average *f, const int32_t *level_db_q8,
+void lm_azimuth_average_add(struct lm_azimuth_average *f, const int16_t *level_db_q8,
                             uint32_t cells)
 {
     lm_k_levels_add(f->sum_db_q8, level_db_q8, cells);
 }
 
 void lm_azimuth_average_mean(const struct lm_azimuth_average *f, uint32_t azimuths_log2,
-                             int32_t *level_db_q8, uint32_t cells)
+                             int16_t *level_db_q8, uint32_t cells)
 {
     const int32_t azimuths_db_q8 = ((int32_t)azimuths_log2 * FX_DB_PER_OCTAVE_Q14 + 32) / 64;
-    lm_k_levels_mean(f->sum_db_q8, azimuths_db_q8, LM_LEVEL_SHADOW, level_db_q8, cells);
+    lm_k_levels_mean(f->sum_db_q8, (int16_t)azimuths_db_q8, level_db_q8, cells);
 }

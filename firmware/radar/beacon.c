@@ -68,9 +68,9 @@ void lm_beacon_sample(const struct lm_beacon_sample *b, struct lm_line *line, ui
 }
 
 void lm_beacon_show(const uint32_t *power_q24, uint32_t cells, int32_t bright_db_q8,
-                    int32_t *level_db_q8)
+                    int16_t *level_db_q8)
 {
     for (uint32_t i = 0; i < cells; i++) {
-        level_db_q8[i] = power_q24[i] >= SHOWN_Q24 ? bright_db_q8 : LM_LEVEL_SHADOW;
+        level_db_q8[i] = power_q24[i] >= SHOWN_Q24 ? fx_sat_i16(bright_db_q8) : LM_LEVEL_SHADOW;
     }
 }

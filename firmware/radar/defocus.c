@@ -2,6 +2,7 @@
 
 #include "fx/log.h"
 #include "fx/root.h"
+#include "fx/sat.h"
 #include "lm/units.h"
 
 enum { LINES = 2 * LM_DEFOCUS_REACH + 1, WIDTH_MAX_Q8 = LINES * 256 };
@@ -47,8 +48,8 @@ void lm_defocus_shares(uint32_t width_lines_q8, uint32_t share_q16[LINES])
 /* P_i = sum of share_m p_(m,i). A power in Q32 is split at 16 bits before it is multiplied by a
  * share of at most 2^16: the products fit 64 bits. The shares add up to 2^16, so the sum is at most
  * the greatest power. */
-void lm_defocus_run(const int32_t *const line_db_q8[LINES], const uint32_t share_q16[LINES],
-                    int32_t *level_db_q8, uint64_t *power_q32, uint32_t cells)
+void lm_defocus_run(const int16_t *const line_db_q8[LINES], const uint32_t share_q16[LINES],
+                    int16_t *level_db_q8, uint64_t *power_q32, uint32_t cells)
 {
     const int32_t unit_q8 = fx_db_q8_u64((uint64_t)1 << 32);
     for (uint32_t i = 0; i < cells; i++) {
@@ -62,6 +63,6 @@ void lm_defocus_run(const int32_t *const line_db_q8[LINES], const uint32_t share
         }
     }
     for (uint32_t i = 0; i < cells; i++) {
-        level_db_q8[i] = fx_db_q8_u64(power_q32[i]) - unit_q8;
+        level_db_q8[i] = fx_sat_i16(fx_db_q8_u64(power_q32[i]) - unit_q8);
     }
 }

@@ -12,8 +12,8 @@ lm_horizon_q40_t lm_line_trace(struct lm_line *line, struct lm_tile_cache *tiles
     if (setup->detail) {
         lm_detail_patch_draw(setup->detail, setup->number, path, &line->ground, cells);
     }
-    horizon = lm_illuminate(setup->grid, setup->class_lut, &line->ground, horizon, &line->lit);
-    lm_class_gain_run(setup->class_gain, line->ground.cell, line->lit.level_db_q8, cells);
+    horizon = lm_illuminate(setup->grid, setup->class_lut, setup->class_gain, &line->ground,
+                            horizon, &line->lit);
     lm_sea_run(setup->sea, line->ground.cell, line->lit.level_db_q8);
     return horizon;
 }
@@ -27,7 +27,7 @@ bool lm_line_add_targets(struct lm_line *line, const struct lm_range_grid *grid,
     for (uint32_t i = 0; i < grid->cells; i++) {
         line->steady.level_db_q8[i] = LM_LEVEL_SHADOW;
     }
-    int32_t *level_db_q8 = line->steady.level_db_q8;
+    int16_t *level_db_q8 = line->steady.level_db_q8;
     uint32_t cells = lm_target_line_add(targets->candidates, &where, &horizon, level_db_q8);
     if (targets->live->count != 0) {
         cells += lm_target_line_add(targets->live, &where, &horizon, level_db_q8);

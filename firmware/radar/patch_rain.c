@@ -224,7 +224,7 @@ static const int32_t *veil_at(struct lm_patch_rain *p, const struct lm_patch_geo
 }
 
 void lm_patch_rain_run(struct lm_patch_rain *p, const struct lm_patch_geometry *g, uint32_t line,
-                       const int32_t *clutter_db_q8, int32_t *level_db_q8)
+                       const int16_t *clutter_db_q8, int16_t *level_db_q8)
 {
     const fx_bam_t aside = aside_of(g, (int32_t)line);
     const struct lm_shower_cells reach = reach_of(g, aside);
@@ -237,7 +237,8 @@ void lm_patch_rain_run(struct lm_patch_rain *p, const struct lm_patch_geometry *
     for (uint32_t i = 0; i < g->cells; i++) {
         const int32_t veil_db_q8 =
             before_db_q8[i] + ((after_db_q8[i] - before_db_q8[i]) * part_q8 >> 8);
-        level_db_q8[i] = fx_db_q8_sum_vec(clutter_db_q8[i] - p->loss_db_q8[i], veil_db_q8);
+        level_db_q8[i] =
+            fx_sat_i16(fx_db_q8_sum_vec(clutter_db_q8[i] - p->loss_db_q8[i], veil_db_q8));
     }
 }
 

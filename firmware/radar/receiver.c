@@ -223,7 +223,7 @@ void lm_receiver_join(const struct lm_receiver *r, const uint32_t *restrict stea
 }
 
 void lm_receiver_run(const struct lm_receiver *r, const struct lm_weather *weather, uint32_t line,
-                     uint32_t sweep, const uint32_t *power_q24, int32_t *level_db_q8)
+                     uint32_t sweep, const uint32_t *power_q24, int16_t *level_db_q8)
 {
     const struct lm_noise_key noise_key = lm_noise_key_of(LM_NOISE_RECEIVER, line, sweep);
     struct lm_noise_line noise;

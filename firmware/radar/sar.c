@@ -556,8 +556,8 @@ static void trace_line(struct lm_sar *s, struct lm_tile_cache *tiles, uint32_t n
 }
 
 /* Weaken the line by rain, add its floor, and multiply all of it by the speckle. */
-static void add_floor_and_speckle(struct lm_sar *s, uint32_t number, int32_t *clutter_db_q8,
-                                  int32_t *level_db_q8)
+static void add_floor_and_speckle(struct lm_sar *s, uint32_t number, int16_t *clutter_db_q8,
+                                  int16_t *level_db_q8)
 {
     const uint32_t cells = s->radar->sar.cells;
     const struct lm_grain_place place = {s->grain.row + number, s->grain.column};
@@ -574,9 +574,9 @@ static void add_floor_and_speckle(struct lm_sar *s, uint32_t number, int32_t *cl
 }
 
 void lm_sar_sample_line(struct lm_sar *s, struct lm_tile_cache *tiles, uint32_t number,
-                        struct lm_line *line, int32_t *level_db_q8)
+                        struct lm_line *line, int16_t *level_db_q8)
 {
-    int32_t *clutter_db_q8 = line->lit.level_db_q8;
+    int16_t *clutter_db_q8 = line->lit.level_db_q8;
     trace_line(s, tiles, number, line);
     if (s->lean_q16 != 0) {
         clutter_db_q8 =
@@ -625,7 +625,7 @@ static bool find_hidden(struct lm_sar *s, struct lm_tile_cache *tiles, uint32_t 
     return s->hidden_known == s->target_patch.scatterer_count;
 }
 
-static int32_t *ring_line(struct lm_sar *s, uint32_t number)
+static int16_t *ring_line(struct lm_sar *s, uint32_t number)
 {
     return s->ring_db_q8[number % LM_SAR_RING];
 }
@@ -635,7 +635,7 @@ static void sample_lines(struct lm_sar *s, struct lm_tile_cache *tiles, uint32_t
                          struct lm_line *line)
 {
     for (; s->sampled < end; s->sampled++) {
-        int32_t *const level_db_q8 = ring_line(s, s->sampled);
+        int16_t *const level_db_q8 = ring_line(s, s->sampled);
         lm_sar_sample_line(s, tiles, s->sampled, line, level_db_q8);
         /* A chip has the side lobes that were baked into it: on its lines none are found. */
         const bool has_chip = s->chips && s->target_patch.on_line[s->sampled] != 0;
@@ -662,12 +662,12 @@ static void add_scatterers(struct lm_sar *s, uint32_t end)
 
 /* Levels of the line to be drawn: as sampled, or out of focus, in smeared_db_q8. The patch's first
  * and last lines are repeated beyond its edges. */
-static const int32_t *focus_line(struct lm_sar *s, int32_t *smeared_db_q8)
+static const int16_t *focus_line(struct lm_sar *s, int16_t *smeared_db_q8)
 {
     if (s->defocus_lines_q8 <= 256) {
         return ring_line(s, s->line);
     }
-    const int32_t *near_lines[2 * LM_DEFOCUS_REACH + 1];
+    const int16_t *near_lines[2 * LM_DEFOCUS_REACH + 1];
     uint32_t share_q16[2 * LM_DEFOCUS_REACH + 1];
     for (int32_t m = -LM_DEFOCUS_REACH; m <= LM_DEFOCUS_REACH; m++) {
         const int32_t last = (int32_t)s->lines - 1;
@@ -703,12 +703,12 @@ bool lm_sar_sample_ahead(struct lm_sar *s, struct lm_tile_cache *tiles, uint32_t
     return s->sampled >= end;
 }
 
-const int32_t *lm_sar_draw_line(struct lm_sar *s, struct lm_tile_cache *tiles,
+const int16_t *lm_sar_draw_line(struct lm_sar *s, struct lm_tile_cache *tiles,
                                 const struct lm_tone *tone, struct lm_line *line)
 {
     lm_sar_sample_ahead(s, tiles, LM_PATCH_SCATTERERS_MAX, line);
     add_scatterers(s, fx_min_u32(s->line + 1 + LM_DEFOCUS_REACH, s->lines));
-    const int32_t *const level_db_q8 = focus_line(s, line->lit.level_db_q8);
+    const int16_t *const level_db_q8 = focus_line(s, line->lit.level_db_q8);
     lm_tone_run(tone, level_db_q8 + LM_SAR_GUARD, line->grey + LM_SAR_GUARD, s->radar->sar.cells);
     s->line++;
     return level_db_q8;

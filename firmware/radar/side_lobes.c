@@ -69,14 +69,23 @@ void lm_side_lobes_clear(struct lm_side_lobes *s, const struct lm_side_lobe_conf
     }
 }
 
-/* True if the cell stands far above the ends of its surroundings, and is the highest of them. */
-static inline bool stands_out(const int32_t *level_db_q8, uint32_t cell, uint32_t cells,
-                              int32_t above_db_q8)
+/* A line that is searched: its number and levels, and the level from which on a cell counts. */
+struct search {
+    struct lm_side_lobes *s;
+    const int16_t *level_db_q8;
+    uint32_t line, cells, seed;
+    int16_t least_db_q8;
+};
+
+/* What lm_k_stand_out says of a cell, near an end of the line: cells beyond it are none. */
+static bool stands_out(const struct search *of, uint32_t cell)
 {
+    const int16_t *const level_db_q8 = of->level_db_q8;
     const uint32_t first = cell > BESIDE ? cell - BESIDE : 0;
-    const uint32_t last = fx_min_u32(cell + BESIDE, cells - 1);
-    const int32_t most_db_q8 = level_db_q8[cell] - above_db_q8;
-    if (level_db_q8[first] > most_db_q8 || level_db_q8[last] > most_db_q8) {
+    const uint32_t last = fx_min_u32(cell + BESIDE, of->cells - 1);
+    const int32_t most_db_q8 = level_db_q8[cell] - of->s->config->above_db_q8;
+    if (level_db_q8[cell] < of->least_db_q8 || level_db_q8[first] > most_db_q8 ||
+        level_db_q8[last] > most_db_q8) {
         return false;
     }
     for (uint32_t i = first; i <= last; i++) {
@@ -87,14 +96,6 @@ static inline bool stands_out(const int32_t *level_db_q8, uint32_t cell, uint32_
     return true;
 }
 
-/* A line that is searched: its number and levels, and the level from which on a cell counts. */
-struct search {
-    struct lm_side_lobes *s;
-    const int32_t *level_db_q8;
-    uint32_t line, cells, seed;
-    int32_t least_db_q8;
-};
-
 /* True if a strong cell comes before a cell: it is stronger, or as strong and nearer. */
 static inline bool is_before(const struct lm_strong_cell *p, uint32_t cell, int32_t level_db_q8)
 {
@@ -102,17 +103,16 @@ static inline bool is_before(const struct lm_strong_cell *p, uint32_t cell, int3
            (p->level_db_q8 == level_db_q8 && p->cell < (int32_t)cell);
 }
 
-/* Insert a cell by its level if it stands out. The weakest drops out of a full line, and what is
+/* Insert a cell that stands out, by its level. The weakest drops out of a full line, and what is
  * weaker counts no more. Out of line, it takes no registers from the search. */
 static __attribute__((noinline)) void consider(struct search *of, uint32_t cell)
 {
     const struct lm_side_lobe_config *const config = of->s->config;
     struct lm_strong_cell *const strong = of->s->line[of->line % LM_SIDE_LOBES_LINES].strong;
     uint32_t *const count = &of->s->line[of->line % LM_SIDE_LOBES_LINES].count;
-    const int32_t level_db_q8 = of->level_db_q8[cell];
+    const int16_t level_db_q8 = of->level_db_q8[cell];
     const bool is_full = *count == config->a_line;
-    if ((is_full && is_before(&strong[*count - 1], cell, level_db_q8)) ||
-        !stands_out(of->level_db_q8, cell, of->cells, config->above_db_q8)) {
+    if (is_full && is_before(&strong[*count - 1], cell, level_db_q8)) {
         return;
     }
     const uint32_t draw = fx_hash3(of->line, cell, of->seed);
@@ -120,25 +120,25 @@ static __attribute__((noinline)) void consider(struct search *of, uint32_t cell)
     for (; at > 0 && !is_before(&strong[at - 1], cell, level_db_q8); at--) {
         strong[at] = strong[at - 1];
     }
-    strong[at] = (struct lm_strong_cell){(int32_t)cell, level_db_q8, draw % LM_SIDE_LOBES_OFFSETS,
-                                         draw / LM_SIDE_LOBES_OFFSETS % LM_SIDE_LOBES_OFFSETS};
+    strong[at] = (struct lm_strong_cell){
+        .cell = (int16_t)cell,
+        .level_db_q8 = level_db_q8,
+        .right = (uint8_t)(draw % LM_SIDE_LOBES_OFFSETS),
+        .beyond = (uint8_t)(draw / LM_SIDE_LOBES_OFFSETS % LM_SIDE_LOBES_OFFSETS)};
     if (*count == config->a_line) {
         of->least_db_q8 = strong[*count - 1].level_db_q8;
     }
 }
 
-/* Cells of a group that may count, bit by bit: all that are high enough where the line ends near.
- */
+/* Cells of a group that stand out, bit by bit. */
 static inline uint32_t cells_of(const struct search *of, uint32_t first)
 {
-    const uint32_t end = fx_min_u32(first + LM_K_HIGHEST_CELLS, of->cells);
-    const int32_t *const level_db_q8 = of->level_db_q8 + first;
     if (first >= LM_K_BESIDE && first + LM_K_HIGHEST_CELLS + LM_K_BESIDE <= of->cells) {
-        return lm_k_stand_out(level_db_q8, of->least_db_q8, of->s->config->above_db_q8);
+        return lm_k_stand_out(of->level_db_q8 + first, of->least_db_q8, of->s->config->above_db_q8);
     }
     uint32_t mask = 0;
-    for (uint32_t k = 0; k < end - first; k++) {
-        mask |= (uint32_t)(level_db_q8[k] >= of->least_db_q8) << k;
+    for (uint32_t k = 0; k < fx_min_u32(LM_K_HIGHEST_CELLS, of->cells - first); k++) {
+        mask |= (uint32_t)stands_out(of, first + k) << k;
     }
     return mask;
 }
@@ -151,11 +151,7 @@ static inline void search_group(struct search *of, uint32_t first)
     }
 }
 
-enum {
-    GROUPS = (LM_CELLS_MAX + LM_K_HIGHEST_CELLS - 1) / LM_K_HIGHEST_CELLS,
-    GROUPS_LOG2 = 6,
-    KEY_MAX_DB_Q8 = 1 << 24 /* levels take 17 bits; what stands behind the last may be anything */
-};
+enum { GROUPS = (LM_CELLS_MAX + LM_K_HIGHEST_CELLS - 1) / LM_K_HIGHEST_CELLS, GROUPS_LOG2 = 6 };
 
 _Static_assert(GROUPS <= 1 << GROUPS_LOG2, "a key holds the number of a group");
 
@@ -164,16 +160,16 @@ _Static_assert(GROUPS <= 1 << GROUPS_LOG2, "a key holds the number of a group");
  */
 static void search_groups(struct search *of)
 {
+    int16_t highest_db_q8[GROUPS + LM_LANES];
     int32_t key[GROUPS + LM_LANES];
     const uint32_t groups = (of->cells + LM_K_HIGHEST_CELLS - 1) / LM_K_HIGHEST_CELLS;
     const uint32_t room = (groups + LM_LANES - 1) / LM_LANES * LM_LANES; /* no vector has a rest */
-    lm_k_highest(of->level_db_q8, key, of->cells);
+    lm_k_highest(of->level_db_q8, highest_db_q8, of->cells);
     for (uint32_t n = groups; n < room; n++) {
-        key[n] = -KEY_MAX_DB_Q8;
+        highest_db_q8[n] = INT16_MIN;
     }
     for (uint32_t n = 0; n < room; n++) {
-        const int32_t highest_db_q8 = fx_clamp_i32(key[n], -KEY_MAX_DB_Q8, KEY_MAX_DB_Q8 - 1);
-        key[n] = highest_db_q8 * (1 << GROUPS_LOG2) + (int32_t)((1u << GROUPS_LOG2) - 1 - n);
+        key[n] = highest_db_q8[n] * (1 << GROUPS_LOG2) + (int32_t)((1u << GROUPS_LOG2) - 1 - n);
     }
     for (uint32_t turn = 0; turn < groups; turn++) {
         int32_t most = key[0];
@@ -189,7 +185,7 @@ static void search_groups(struct search *of)
     }
 }
 
-void lm_side_lobes_find(struct lm_side_lobes *s, uint32_t line, const int32_t *level_db_q8,
+void lm_side_lobes_find(struct lm_side_lobes *s, uint32_t line, const int16_t *level_db_q8,
                         uint32_t cells, int32_t shadow_db_q8, uint32_t seed)
 {
     s->line[line % LM_SIDE_LOBES_LINES].count = 0;
@@ -200,16 +196,16 @@ void lm_side_lobes_find(struct lm_side_lobes *s, uint32_t line, const int32_t *l
                             .line = line,
                             .cells = cells,
                             .seed = seed,
-                            .least_db_q8 = shadow_db_q8 + s->config->over_shadow_db_q8};
+                            .least_db_q8 = fx_sat_i16(shadow_db_q8 + s->config->over_shadow_db_q8)};
         search_groups(&of);
     }
 }
 
 /* Add a side lobe, if it is not 25 dB below what is there. */
-static inline void add(int32_t *level_db_q8, int32_t side_lobe)
+static inline void add(int16_t *level_db_q8, int32_t side_lobe)
 {
     if (side_lobe > *level_db_q8 - LM_K_LOBES_BELOW_DB_Q8) {
-        *level_db_q8 = fx_db_q8_sum_vec(*level_db_q8, side_lobe);
+        *level_db_q8 = fx_sat_i16(fx_db_q8_sum_vec(*level_db_q8, side_lobe));
     }
 }
 
@@ -221,7 +217,7 @@ static inline const int16_t *side_of(const struct lm_side_lobes *s, uint32_t off
 
 /* Side lobes of a point in its own line. A kernel adds all but the last, where the line has all. */
 static inline void add_along(const struct lm_side_lobes *s, const struct lm_strong_cell *p,
-                             int32_t *level_db_q8, int32_t cells)
+                             int16_t *level_db_q8, int32_t cells)
 {
     const int16_t *const side = side_of(s, p->beyond);
     int32_t first = p->cell - LM_RESPONSE_REACH;
@@ -237,7 +233,7 @@ static inline void add_along(const struct lm_side_lobes *s, const struct lm_stro
 
 /* Side lobes of the points of line `n` on another, `beside` lines on. */
 static inline void add_across(const struct lm_side_lobes *s, uint32_t n, int32_t beside,
-                              int32_t *level_db_q8)
+                              int16_t *level_db_q8)
 {
     const uint32_t slot = n % LM_SIDE_LOBES_LINES;
     for (uint32_t k = 0; k < s->line[slot].count; k++) {
@@ -246,7 +242,7 @@ static inline void add_across(const struct lm_side_lobes *s, uint32_t n, int32_t
     }
 }
 
-void lm_side_lobes_add(const struct lm_side_lobes *s, uint32_t line, int32_t *level_db_q8,
+void lm_side_lobes_add(const struct lm_side_lobes *s, uint32_t line, int16_t *level_db_q8,
                        uint32_t cells)
 {
     const uint32_t slot = line % LM_SIDE_LOBES_LINES;

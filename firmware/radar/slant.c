@@ -41,17 +41,18 @@ void lm_slant_set(struct lm_slant *s, uint32_t first_m_q8, uint32_t cell_m_q8, u
     }
 }
 
-void lm_slant_run(const struct lm_slant *s, const struct lm_range_grid *grid, int32_t *level_db_q8,
+void lm_slant_run(const struct lm_slant *s, const struct lm_range_grid *grid, int16_t *level_db_q8,
                   uint32_t *power_q24)
 {
-    int32_t *const bin_db_q8 = (int32_t *)power_q24;
+    int16_t bin_db_q8[LM_CELLS_ROOM];
     level_db_q8[grid->cells] = LM_LEVEL_SHADOW;
     lm_k_gather(level_db_q8, s->cell_of, bin_db_q8, s->cells);
     for (uint32_t k = 0; k < s->pairs; k++) {
         const struct lm_slant_pair *pair = &s->pair[k];
-        bin_db_q8[pair->bin] = fx_max_i32(bin_db_q8[pair->bin], level_db_q8[pair->last]);
+        const int16_t last_db_q8 = level_db_q8[pair->last];
+        if (last_db_q8 > bin_db_q8[pair->bin]) {
+            bin_db_q8[pair->bin] = last_db_q8;
+        }
     }
-    /* Levels are within 2^17. The lowest is a cell hardly lit, -195 dB, with class gain and sea
-     * -127, speckle -33, a chip's shadow -48 and the elevation pattern -96. */
-    lm_k_powers_of_levels(power_q24, s->cells);
+    lm_k_powers_of_levels(bin_db_q8, power_q24, s->cells);
 }

@@ -99,7 +99,7 @@ int lm_tone_set(struct lm_tone *t, const struct lm_tone_config *config)
     return LM_OK;
 }
 
-void lm_tone_run(const struct lm_tone *t, const int32_t *level_db_q8, uint8_t *grey, uint32_t cells)
+void lm_tone_run(const struct lm_tone *t, const int16_t *level_db_q8, uint8_t *grey, uint32_t cells)
 {
     const struct lm_k_tone_curve curve = {.black_db_q8 = t->black_db_q8,
                                           .white_db_q8 = t->white_db_q8,

@@ -131,15 +131,15 @@ static uint32_t pixels_a_cell_q16(const struct lm_chip_slot *slot,
 /* Take from each cell the part of its level that lies in shadow. A cell's dark pixels add up to Q20
  * of pixels; by area they become a part of the cell. */
 static void darken(const struct pixel_map *map, const uint32_t cell[LM_CHIP_SPAN + 1],
-                   uint32_t ratio_q16, int32_t *level_db_q8)
+                   uint32_t ratio_q16, int16_t *level_db_q8)
 {
     for (uint32_t i = 0; i < map->cells; i++) {
         const uint64_t dark_q16 = (uint64_t)cell[i] * ratio_q16 >> 20;
         if (dark_q16 >= 65536) {
             level_db_q8[map->first + (int32_t)i] = LM_LEVEL_SHADOW;
         } else if (dark_q16 != 0) {
-            level_db_q8[map->first + (int32_t)i] +=
-                fx_db_q8((uint32_t)(65536 - dark_q16)) - fx_db_q8(65536);
+            int16_t *const at = &level_db_q8[map->first + (int32_t)i];
+            *at = fx_sat_i16(*at + fx_db_q8((uint32_t)(65536 - dark_q16)) - fx_db_q8(65536));
         }
     }
 }
@@ -148,7 +148,7 @@ static void darken(const struct pixel_map *map, const uint32_t cell[LM_CHIP_SPAN
  */
 static uint32_t brighten(const struct lm_chip_slot *slot, const struct pixel_map *map,
                          const uint32_t cell[LM_CHIP_SPAN + 1], int32_t clutter_db_q8,
-                         int32_t *level_db_q8)
+                         int16_t *level_db_q8)
 {
     const int32_t unit_q8 = fx_db_q8(1u << 31);
     uint32_t given = 0;
@@ -157,7 +157,7 @@ static uint32_t brighten(const struct lm_chip_slot *slot, const struct pixel_map
             const uint32_t at = (uint32_t)map->first + i;
             const int32_t chip_db_q8 =
                 slot->total_dbsm_q8 + fx_db_q8(cell[i]) - unit_q8 - clutter_db_q8;
-            level_db_q8[at] = fx_db_q8_sum_vec(level_db_q8[at], chip_db_q8);
+            level_db_q8[at] = fx_sat_i16(fx_db_q8_sum_vec(level_db_q8[at], chip_db_q8));
             given++;
         }
     }
@@ -167,7 +167,7 @@ static uint32_t brighten(const struct lm_chip_slot *slot, const struct pixel_map
 uint32_t lm_chip_sector_add(const struct lm_target_candidate *candidate,
                             const struct lm_chip_sector_origin *origin,
                             const struct lm_target_line *line, int32_t clutter_db_q8,
-                            int32_t *level_db_q8)
+                            int16_t *level_db_q8)
 {
     uint32_t cell[LM_CHIP_SPAN + 1];
     const struct lm_chip_slot *slot = candidate->chip;

@@ -312,19 +312,19 @@ static void make_scatterers_echo(struct echo *e, const struct lm_target_line *li
 
 /* Add a level to a cell and, if the line stretches echoes, to those before and behind it. */
 static void add_level(const struct lm_target_line *line, int32_t cell, int32_t gamma_db_q8,
-                      int32_t *level_db_q8)
+                      int16_t *level_db_q8)
 {
     const int32_t stretch = (int32_t)line->stretch_cells;
     const int32_t first = fx_max_i32(cell - stretch, (int32_t)line->first);
     const int32_t end = fx_min_i32(cell + stretch + 1, (int32_t)line->cells);
     for (int32_t k = first; k < end; k++) {
-        level_db_q8[k] = fx_db_q8_sum_vec(level_db_q8[k], gamma_db_q8);
+        level_db_q8[k] = fx_sat_i16(fx_db_q8_sum_vec(level_db_q8[k], gamma_db_q8));
     }
 }
 
 /* Add a phasor sum to each cell that holds some of the returns. */
 static uint32_t add_echo(const struct echo *e, const struct lm_target_line *line,
-                         int32_t *level_db_q8)
+                         int16_t *level_db_q8)
 {
     uint32_t cells = 0, done = 0;
     for (uint32_t i = 0; i < e->count; i++) {
@@ -360,7 +360,7 @@ static bool sees_top(const struct lm_target_line *line, const struct lm_target_h
 /* Draw a target by its chip. */
 static uint32_t add_chip(const struct lm_target_line *line,
                          const struct lm_target_candidate *candidate,
-                         const struct apparent_position *seen, int32_t *level_db_q8)
+                         const struct apparent_position *seen, int16_t *level_db_q8)
 {
     const uint32_t cell =
         (seen->range_m_q8 - line->first_m_q8 + line->cell_m_q8 / 2) / line->cell_m_q8;
@@ -377,11 +377,11 @@ static uint32_t add_target(const struct lm_target_candidates *candidates,
                            const struct lm_target_candidate *candidate,
                            const struct lm_target_line *line,
                            const struct lm_target_horizon *horizon,
-                           const struct apparent_position *seen, int32_t *level_db_q8)
+                           const struct apparent_position *seen, int16_t *level_db_q8)
 {
     struct echo echo;
     if (lm_chip_of(candidate) && line->stretch_cells == 0) {
-        int32_t *ground_db_q8 = line->clutter_db_q8 ? line->clutter_db_q8 : level_db_q8;
+        int16_t *ground_db_q8 = line->clutter_db_q8 ? line->clutter_db_q8 : level_db_q8;
         return sees_top(line, horizon, &candidates->set, candidate, seen)
                    ? add_chip(line, candidate, seen, ground_db_q8)
                    : 0;
@@ -397,7 +397,7 @@ static uint32_t add_target(const struct lm_target_candidates *candidates,
 
 uint32_t lm_target_line_add(const struct lm_target_candidates *candidates,
                             const struct lm_target_line *line,
-                            const struct lm_target_horizon *horizon, int32_t *level_db_q8)
+                            const struct lm_target_horizon *horizon, int16_t *level_db_q8)
 {
     uint32_t cells = 0;
     for (uint32_t left = find_in_reach(candidates, line); left != 0; left &= left - 1) {

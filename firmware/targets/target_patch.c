@@ -390,7 +390,7 @@ static void spread(struct lm_target_patch *work, const struct lm_patch_scatterer
 
 /* Add the sums to the levels, and clear them. */
 static void collect(struct lm_target_patch *work, struct span touched, int32_t reference_db_q8,
-                    int32_t *level_db_q8)
+                    int16_t *level_db_q8)
 {
     const int32_t unit_q8 = fx_db_q8_u64((uint64_t)1 << 48);
     for (int32_t i = touched.first; i < touched.end; i++) {
@@ -398,8 +398,8 @@ static void collect(struct lm_target_patch *work, struct span touched, int32_t r
         const uint64_t power_q48 = (uint64_t)(re_q24 * re_q24 + im_q24 * im_q24);
         work->re_q24[i] = work->im_q24[i] = 0;
         if (power_q48 != 0) {
-            level_db_q8[i] = fx_db_q8_sum_vec(level_db_q8[i],
-                                              reference_db_q8 + fx_db_q8_u64(power_q48) - unit_q8);
+            const int32_t echo_db_q8 = reference_db_q8 + fx_db_q8_u64(power_q48) - unit_q8;
+            level_db_q8[i] = fx_sat_i16(fx_db_q8_sum_vec(level_db_q8[i], echo_db_q8));
         }
     }
 }
@@ -407,7 +407,7 @@ static void collect(struct lm_target_patch *work, struct span touched, int32_t r
 /* Add one target: its scatterers as phasors, and the slices of its dwell as powers, because their
  * phases drift apart. */
 static void add_target(struct lm_target_patch *p, const struct lm_patch_target *t, uint32_t line,
-                       int32_t least_db_q8, struct span within, int32_t *level_db_q8)
+                       int32_t least_db_q8, struct span within, int16_t *level_db_q8)
 {
     const struct lm_smear *smear = &t->smear;
     int32_t strongest_db_q8 = p->scatterer[t->begin].level_db_q8;
@@ -429,7 +429,7 @@ static void add_target(struct lm_target_patch *p, const struct lm_patch_target *
 }
 
 void lm_target_patch_add_scatterers(struct lm_target_patch *p, uint32_t line, int32_t least_db_q8,
-                                    const struct lm_patch_geometry *g, int32_t *level_db_q8)
+                                    const struct lm_patch_geometry *g, int16_t *level_db_q8)
 {
     const struct span within = {(int32_t)g->first, (int32_t)g->cells};
     for (uint32_t left = p->on_line[line]; left != 0;) {
@@ -463,7 +463,7 @@ static struct span cells_under(const struct lm_chip_reach *reach,
 
 /* Darken the cells of a line that a chip's shadow reaches. */
 static void shade(const struct lm_target_patch *p, const struct lm_patch_chip *chip, uint32_t line,
-                  const struct lm_patch_geometry *g, int32_t *level_db_q8)
+                  const struct lm_patch_geometry *g, int16_t *level_db_q8)
 {
     const int32_t lit_q8 = fx_db_q8(LM_CHIP_SHADOW_ALL);
     const struct lm_patch_scatterer *at = &p->scatterer[chip->scatterer];
@@ -473,14 +473,15 @@ static void shade(const struct lm_target_patch *p, const struct lm_patch_chip *c
     for (int32_t i = under.first; i < under.end; i++) {
         const uint32_t dark = lm_chip_patch_shadow(&chip->patch, right_cells_q8,
                                                    lm_cells_q8_of_cells(i) - origin.along_cells_q8);
-        level_db_q8[i] = dark == LM_CHIP_SHADOW_ALL
-                             ? LM_LEVEL_SHADOW
-                             : level_db_q8[i] + fx_db_q8(LM_CHIP_SHADOW_ALL - dark) - lit_q8;
+        level_db_q8[i] =
+            dark == LM_CHIP_SHADOW_ALL
+                ? LM_LEVEL_SHADOW
+                : fx_sat_i16(level_db_q8[i] + fx_db_q8(LM_CHIP_SHADOW_ALL - dark) - lit_q8);
     }
 }
 
 void lm_target_patch_shade(const struct lm_target_patch *p, uint32_t line,
-                           const struct lm_patch_geometry *g, int32_t *level_db_q8)
+                           const struct lm_patch_geometry *g, int16_t *level_db_q8)
 {
     for (uint32_t left = p->on_line[line]; left != 0;) {
         const uint32_t target = take_next(&left);
@@ -494,7 +495,7 @@ void lm_target_patch_shade(const struct lm_target_patch *p, uint32_t line,
  * number of its cells. */
 static uint32_t add_slice(const struct lm_patch_chip *chip, const struct lm_patch_scatterer *at,
                           const struct slice *slice, uint32_t line, uint32_t room,
-                          const struct lm_patch_geometry *g, int32_t *level_db_q8)
+                          const struct lm_patch_geometry *g, int16_t *level_db_q8)
 {
     const struct origin origin = {at->across_cells_q8 + slice->across_cells_q8,
                                   at->along_cells_q8 + slice->along_cells_q8};
@@ -505,15 +506,15 @@ static uint32_t add_slice(const struct lm_patch_chip *chip, const struct lm_patc
         const int32_t rcs_dbsm_q8 = lm_chip_patch_rcs_dbsm_q8(
             &chip->patch, right_cells_q8, lm_cells_q8_of_cells(i) - origin.along_cells_q8);
         if (rcs_dbsm_q8 > LM_RCS_NONE_DBSM_Q8) {
-            level_db_q8[i] = fx_db_q8_sum_vec(level_db_q8[i], rcs_dbsm_q8 + slice->share_db_q8 -
-                                                                  chip->area_dbm2_q8);
+            const int32_t chip_db_q8 = rcs_dbsm_q8 + slice->share_db_q8 - chip->area_dbm2_q8;
+            level_db_q8[i] = fx_sat_i16(fx_db_q8_sum_vec(level_db_q8[i], chip_db_q8));
         }
     }
     return cells;
 }
 
 uint32_t lm_target_patch_add_chips(const struct lm_target_patch *p, uint32_t line,
-                                   const struct lm_patch_geometry *g, int32_t *level_db_q8)
+                                   const struct lm_patch_geometry *g, int16_t *level_db_q8)
 {
     uint32_t room = LM_CHIP_CELLS_A_LINE, left_out = 0;
     for (uint32_t targets = p->on_line[line]; targets != 0;) {

@@ -33,7 +33,7 @@ table() { # divisor format figure
             paint = n["lm_scan_conv_patch"] + n["lm_scan_conv_sector"]
             part("scan_line: cells, terrain", n["lm_scan_line_run"])
             part("illumination: horizon, shadow, slope, edges", n["lm_illuminate"] + n["lm_foreground_line_horizon"])
-            part("class gain, speckle, noise of a patch", n["lm_class_gain_run"] + n["lm_grain_powers"] + n["lm_receiver_fade"] + n["lm_grain_floor_run"] + n["lm_patch_floor_run"])
+            part("speckle, noise of a patch", n["lm_grain_powers"] + n["lm_receiver_fade"] + n["lm_grain_floor_run"] + n["lm_patch_floor_run"])
             part("layover", n["lm_layover_run"])
             part("side lobes of the ground", n["lm_side_lobes_find"] + n["lm_side_lobes_add"])
             part("mean over a sample of several azimuths", n["lm_azimuth_average_begin"] + n["lm_azimuth_average_add"] + n["lm_azimuth_average_mean"])

@@ -111,7 +111,7 @@ static void draw_patch(struct world *w)
                                         .wavelength_um = 31228,
                                         .across_mm_s = 200000,
                                         .dwell_ms = 4000};
-    int32_t level_q8[LM_CELLS_ROOM] = {0};
+    int16_t level_q8[LM_CELLS_ROOM] = {0};
     lm_target_patch_set(&w->points, &w->near, &g);
     for (uint32_t k = 0; k < LINES; k++) {
         lm_target_patch_shade(&w->points, k, &g, level_q8);
@@ -136,7 +136,7 @@ static void draw_line(struct world *w)
         .off_bam = (int32_t)(w->target.heading >> 8),
         .shadow_off_bam = (int32_t)w->target.heading,
     };
-    int32_t level_q8[LM_CELLS_ROOM] = {0};
+    int16_t level_q8[LM_CELLS_ROOM] = {0};
     if (lm_chip_of(item)) {
         FUZZ_ASSERT(lm_chip_sector_add(item, &spot, &line, 30 * 256, level_q8) <= CELLS);
     }

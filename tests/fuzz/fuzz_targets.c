@@ -76,7 +76,7 @@ static void draw_sector(const struct lm_target *t, uint32_t count, const struct 
     const struct lm_target_set set = {.items = t, .count = count};
     const struct lm_target_query scene = {
         .position = look->place, .reach_m = 40000, .time_us = (uint64_t)look->time_s * 1000000};
-    int32_t level_q8[LM_CELLS_ROOM] = {0};
+    int16_t level_q8[LM_CELLS_ROOM] = {0};
     lm_target_candidates_select(&near, &set, &scene);
     FUZZ_ASSERT(near.count <= LM_TARGET_CANDIDATES_MAX);
     for (fx_bam_t i = 0; i < 8; i++) {
@@ -117,7 +117,7 @@ static void draw_patch(const struct lm_target *t, uint32_t count, const struct l
                                         .dwell_ms = look->time_s & 0x1ffff,
                                         .lean_q16 = (int32_t)(look->track & 0x1ffff)};
     int32_t horizon[LM_CELLS_ROOM] = {0};
-    int32_t level_q8[LM_CELLS_ROOM] = {0};
+    int16_t level_q8[LM_CELLS_ROOM] = {0};
     FUZZ_ASSERT(points);
     lm_target_candidates_select(&near, &set, &scene);
     lm_target_patch_set(points, &near, &g);

@@ -25,8 +25,10 @@ struct input {
     uint32_t cells, first;
     int32_t number[5]; /* floor, rise, ...: what the kernel has of that kind */
     uint32_t cell[ROOM], power_q24[LM_K_TAPS][ROOM], weight_q16[LM_K_TAPS], entry[ROOM];
-    int32_t level_db_q8[ROOM], other_db_q8[ROOM], fall_db_q8[ROOM], rain_db_q8[ROOM];
-    int32_t cell_of[ROOM], gain_db_q8[LM_K_CODES];
+    int32_t noise_db_q8[ROOM], loss_db_q8[ROOM], fall_db_q8[ROOM], rain_db_q8[ROOM];
+    int16_t level_db_q8[ROOM], other_db_q8[ROOM];
+    int32_t cell_of[ROOM];
+    int16_t gain_db_q8[LM_K_CODES];
     uint8_t looks_log2;
     int8_t grain_q5[2][ROOM];
     int32_t base_db_q8[2][LM_K_CURVE_LINES], rise_db_q8[2][LM_K_CURVE_LINES];
@@ -76,6 +78,15 @@ static int32_t within_size(struct input *in, uint32_t limit)
     return within(in, fx_max_u32(limit >> hs_rng_below(&in->rng, 24), 1));
 }
 
+/* Levels, mostly of a few decibels; now and then a shadow. */
+static void draw_level_line(int16_t *line, struct input *in)
+{
+    for (uint32_t k = 0; k < ROOM; k++) {
+        line[k] =
+            hs_rng_below(&in->rng, 8) == 0 ? LM_LEVEL_SHADOW : (int16_t)within_size(in, 1 << 15);
+    }
+}
+
 static void draw_line(int32_t *line, struct input *in, uint32_t limit)
 {
     for (uint32_t k = 0; k < ROOM; k++) {
@@ -94,8 +105,9 @@ static void draw_noise(struct input *in)
 static void draw_levels(struct input *in)
 {
     draw_noise(in);
-    draw_line(in->level_db_q8, in, 1 << 30);
-    draw_line(in->other_db_q8, in, 1 << 30);
+    draw_level_line(in->level_db_q8, in);
+    draw_level_line(in->other_db_q8, in);
+    draw_line(in->loss_db_q8, in, 1 << 30);
     in->number[0] = within_size(in, 1 << 30);
     in->number[1] = within_size(in, 1 << 15);
 }
@@ -122,7 +134,8 @@ static void draw_speckle(struct input *in)
 
 static void draw_small_levels(struct input *in)
 {
-    draw_line(in->level_db_q8, in, 1 << 17);
+    draw_level_line(in->level_db_q8, in);
+    in->number[0] = within_size(in, 1 << 15);
     for (uint32_t k = 0; k < ROOM; k++) {
         in->cell_of[k] = (int32_t)hs_rng_below(&in->rng, LM_CELLS_ROOM);
     }
@@ -139,8 +152,8 @@ static void draw_powers(struct input *in)
             in->power_q24[j][k] = hs_rng_below(&in->rng, 8) ? any_size(in) : 0u - (k & 1);
         }
     }
-    draw_line(in->level_db_q8, in, 1 << 20);
-    draw_line(in->other_db_q8, in, 1 << 20);
+    draw_line(in->noise_db_q8, in, 1 << 20);
+    draw_line(in->loss_db_q8, in, 1 << 20);
     draw_line(in->fall_db_q8, in, 1 << 20);
     draw_line(in->rain_db_q8, in, 1 << 20);
     in->number[0] = within_size(in, 1 << 16);
@@ -150,7 +163,7 @@ static void draw_classes(struct input *in)
 {
     draw_levels(in);
     for (uint32_t k = 0; k < LM_K_CODES; k++) {
-        in->gain_db_q8[k] = within_size(in, 1 << 15);
+        in->gain_db_q8[k] = (int16_t)within_size(in, 1 << 15);
     }
     for (uint32_t k = 0; k < ROOM; k++) {
         in->cell[k] = (uint32_t)hs_rng_u64(&in->rng) & 0xffff;
@@ -255,6 +268,9 @@ static void draw_light(struct input *in)
     memset(&in->grid, 0, sizeof in->grid);
     lm_range_grid_set(&in->grid, &config, first_q8, cell_q8, in->cells, within(in, 30000 * 1024),
                       0);
+    for (uint32_t k = 0; k < LM_K_CODES; k++) {
+        in->gain_db_q8[k] = (int16_t)within_size(in, 1 << 15);
+    }
     in->number[0] = within_size(in, 1 << 30);
 }
 
@@ -271,8 +287,8 @@ static void draw_tone(struct input *in)
     }
     for (uint32_t k = 0; k < ROOM; k++) {
         const int32_t any = (int32_t)hs_rng_u64(&in->rng), place_q15 = any & 0x7fff;
-        in->level_db_q8[k] =
-            k % 8 == 0 ? any >> k % 24 : black_q8 - 500 + (place_q15 * (span_q8 + 1000) >> 15);
+        const int32_t near_q8 = black_q8 - 500 + (place_q15 * (span_q8 + 1000) >> 15);
+        in->level_db_q8[k] = fx_sat_i16(k % 8 == 0 ? any >> k % 24 : near_q8);
     }
 }
 
@@ -289,6 +305,33 @@ static const int16_t *row_of(const struct input *in)
 static void copy_cells(uint32_t *to, const void *from)
 {
     memcpy(to, from, LM_CELLS_ROOM * sizeof *to);
+}
+
+/* A line of levels that a kernel writes, or changes: entry by entry it then goes to an output, and
+ * tells there whether it was touched. */
+struct levels {
+    int16_t db_q8[ROOM];
+};
+
+static struct levels untouched(void)
+{
+    struct levels l;
+    memset(&l, UNTOUCHED & 0xff, sizeof l);
+    return l;
+}
+
+static void tell_levels(uint32_t *line, const struct levels *l)
+{
+    for (uint32_t k = 0; k < ROOM; k++) {
+        line[k] = (uint32_t)l->db_q8[k];
+    }
+}
+
+static struct levels levels_of(const int16_t *from)
+{
+    struct levels l = untouched();
+    memcpy(l.db_q8, from, LM_CELLS_ROOM * sizeof *from);
+    return l;
 }
 
 static void run_tile_read(const struct input *in, struct output *out, bool is_plain)
@@ -345,6 +388,7 @@ static void run_light(const struct input *in, struct output *out, bool is_plain)
     const struct lm_k_tops tops = tops_of(in);
     const uint16_t height_dm = tops.height_dm_of_code[tops.cell[tops.first] % LM_K_CODES];
     const int64_t tangent = lm_k_tangent(&tops, tops.first, lm_k_height_m_q14(height_dm));
+    struct levels levels = untouched();
     const struct lm_k_lit_line line = {
         .tops = tops,
         .gain_db_q8 = in->grid.gain_db_q8,
@@ -353,12 +397,14 @@ static void run_light(const struct input *in, struct output *out, bool is_plain)
         .edge_trees_db_q3 = in->class_lut.edge_trees_db_q3,
         .shore_db_q8 = in->class_lut.shore_db_q8,
         .shore_fall_db_q8 = in->grid.shore_fall_db_q8,
+        .class_gain_db_q8 = in->gain_db_q8,
         .start = fx_sat_i32(tangent + in->number[0]),
         .horizon = signed_line(out->line[0]),
-        .level_db_q8 = signed_line(out->line[1]),
+        .level_db_q8 = levels.db_q8,
         .work = out->work,
     };
     TWIN(lm_k_light)(&line);
+    tell_levels(out->line[1], &levels);
     out->end[0] = in->cells + 1;
     out->room = LM_CELLS_ROOM;
 }
@@ -372,19 +418,12 @@ static void run_highest_tangent(const struct input *in, struct output *out, bool
     out->room = 16;
 }
 
-static void run_class_gain(const struct input *in, struct output *out, bool is_plain)
-{
-    copy_cells(out->line[0], in->level_db_q8);
-    TWIN(lm_k_class_gain)
-    (in->gain_db_q8, in->cell, signed_line(out->line[0]), in->cells);
-}
-
 static void run_water_gain(const struct input *in, struct output *out, bool is_plain)
 {
-    copy_cells(out->line[0], in->level_db_q8);
+    struct levels levels = levels_of(in->level_db_q8);
     TWIN(lm_k_water_gain)
-    ((uint32_t)in->number[0], in->number[1], in->other_db_q8, in->cell, signed_line(out->line[0]),
-     in->cells);
+    ((uint32_t)in->number[0], in->number[1], in->loss_db_q8, in->cell, levels.db_q8, in->cells);
+    tell_levels(out->line[0], &levels);
 }
 
 static struct lm_k_curve curve_of(const struct input *in, uint32_t n)
@@ -396,12 +435,12 @@ static struct lm_k_curve curve_of(const struct input *in, uint32_t n)
 static void draw_layover(struct input *in)
 {
     draw_ground(in, 128u << hs_rng_below(&in->rng, 10));
-    draw_line(in->level_db_q8, in, hs_rng_below(&in->rng, 2) ? 1 << 14 : 1 << 29);
+    draw_level_line(in->level_db_q8, in);
     for (uint32_t k = in->cells; k < ROOM; k++) {
         in->level_db_q8[k] = LM_LEVEL_SHADOW;
     }
     for (uint32_t k = 0; k < LM_K_CODES; k++) {
-        in->gain_db_q8[k] = hs_rng_below(&in->rng, 3) ? (int32_t)(any_size(in) >> 17) : 0;
+        in->gain_db_q8[k] = hs_rng_below(&in->rng, 3) ? (int16_t)(any_size(in) >> 17) : 0;
     }
     in->number[0] = within_size(in, 1 << 29);
     in->number[1] = (int32_t)(any_size(in) >> (1 + hs_rng_below(&in->rng, 20)));
@@ -409,7 +448,8 @@ static void draw_layover(struct input *in)
 
 static void run_layover(const struct input *in, struct output *out, bool is_plain)
 {
-    int32_t laid_db_q8[LM_K_LAYOVER_ROOM];
+    int16_t laid_db_q8[LM_K_LAYOVER_ROOM];
+    struct levels levels = untouched();
     uint8_t height_sixteenths[2][LM_K_CODES];
     const struct lm_k_layover line = {.cell = in->ground.cell,
                                       .elevation_m_q14 = in->ground.elevation_m_q14,
@@ -424,22 +464,26 @@ static void run_layover(const struct input *in, struct output *out, bool is_plai
     }
     memset(laid_db_q8, UNTOUCHED & 0xff, sizeof laid_db_q8);
     TWIN(lm_k_layover)(&line, laid_db_q8);
-    memcpy(out->line[0], laid_db_q8 + LM_K_LAYOVER_MARGIN, in->cells * sizeof *out->line[0]);
+    memcpy(levels.db_q8, laid_db_q8 + LM_K_LAYOVER_MARGIN, in->cells * sizeof *levels.db_q8);
+    tell_levels(out->line[0], &levels);
     out->end[1] = 0;
 }
 
 static void run_grain_add(const struct input *in, struct output *out, bool is_plain)
 {
     const struct lm_k_curve curve = curve_of(in, 0);
-    copy_cells(out->line[0], in->level_db_q8);
-    TWIN(lm_k_grain_add)(&curve, in->grain_q5[0], signed_line(out->line[0]), in->cells);
+    struct levels levels = levels_of(in->level_db_q8);
+    TWIN(lm_k_grain_add)(&curve, in->grain_q5[0], levels.db_q8, in->cells);
+    tell_levels(out->line[0], &levels);
 }
 
 static void run_grain_floor(const struct input *in, struct output *out, bool is_plain)
 {
     const struct lm_k_curve curve = curve_of(in, 0);
+    struct levels levels = untouched();
     TWIN(lm_k_grain_floor)
-    (&curve, in->grain_q5[0], in->number[0], in->level_db_q8, signed_line(out->line[0]), in->cells);
+    (&curve, in->grain_q5[0], in->number[0], in->level_db_q8, levels.db_q8, in->cells);
+    tell_levels(out->line[0], &levels);
 }
 
 static void run_grain_stretch(const struct input *in, struct output *out, bool is_plain)
@@ -454,35 +498,50 @@ static void run_grain_stretch(const struct input *in, struct output *out, bool i
 
 static void run_gather(const struct input *in, struct output *out, bool is_plain)
 {
-    TWIN(lm_k_gather)(in->level_db_q8, in->cell_of, signed_line(out->line[0]), in->cells);
+    struct levels bins = untouched();
+    TWIN(lm_k_gather)(in->level_db_q8, in->cell_of, bins.db_q8, in->cells);
+    tell_levels(out->line[0], &bins);
     out->room = in->cells;
 }
 
 static void run_powers_of_levels(const struct input *in, struct output *out, bool is_plain)
 {
-    copy_cells(out->line[0], in->level_db_q8);
-    TWIN(lm_k_powers_of_levels)(out->line[0], in->cells);
+    TWIN(lm_k_powers_of_levels)(in->level_db_q8, out->line[0], in->cells);
     out->room = in->cells;
+}
+
+/* As many levels as a line has, from each of its first cells on. */
+static void run_sum_powers(const struct input *in, struct output *out, bool is_plain)
+{
+    for (uint32_t first = 0; first < LM_K_STRIDE; first++) {
+        const uint32_t count = in->cells <= first ? 0 : (in->cells - first + 3) / LM_K_STRIDE;
+        out->line[0][first] =
+            TWIN(lm_k_sum_powers)(in->level_db_q8 + first, (int16_t)in->number[0], count);
+    }
+    out->end[0] = out->room = LM_K_STRIDE;
 }
 
 static void run_levels_add(const struct input *in, struct output *out, bool is_plain)
 {
-    copy_cells(out->line[0], in->other_db_q8);
-    TWIN(lm_k_levels_add)(signed_line(out->line[0]), in->level_db_q8, in->cells);
+    struct levels sum = levels_of(in->other_db_q8);
+    TWIN(lm_k_levels_add)(sum.db_q8, in->level_db_q8, in->cells);
+    tell_levels(out->line[0], &sum);
     out->room = in->cells;
 }
 
 static void run_levels_mean(const struct input *in, struct output *out, bool is_plain)
 {
-    copy_cells(out->line[0], in->level_db_q8);
-    TWIN(lm_k_levels_mean)
-    (in->other_db_q8, in->number[1], LM_LEVEL_SHADOW, signed_line(out->line[0]), in->cells);
+    struct levels mean = levels_of(in->level_db_q8);
+    TWIN(lm_k_levels_mean)(in->other_db_q8, (int16_t)in->number[1], mean.db_q8, in->cells);
+    tell_levels(out->line[0], &mean);
     out->room = in->cells;
 }
 
 static void run_highest(const struct input *in, struct output *out, bool is_plain)
 {
-    TWIN(lm_k_highest)(in->level_db_q8, signed_line(out->line[0]), in->cells);
+    struct levels highest = untouched();
+    TWIN(lm_k_highest)(in->level_db_q8, highest.db_q8, in->cells);
+    tell_levels(out->line[0], &highest);
     out->end[0] = (in->cells + LM_K_HIGHEST_CELLS - 1) / LM_K_HIGHEST_CELLS;
     out->room = out->end[0];
 }
@@ -491,18 +550,18 @@ static void run_highest(const struct input *in, struct output *out, bool is_plai
 static void draw_peaks(struct input *in)
 {
     draw_levels(in);
-    in->number[0] = within_size(in, 1 << 17);
-    in->number[1] = within_size(in, hs_rng_below(&in->rng, 2) ? 1 << 17 : 1 << 8);
+    in->number[0] = within_size(in, 1 << 15);
+    in->number[1] = within_size(in, hs_rng_below(&in->rng, 2) ? 1 << 15 : 1 << 8);
     for (uint32_t k = 0; k < ROOM; k += 1 + hs_rng_below(&in->rng, 6)) {
-        in->level_db_q8[k] = in->number[0] + within_size(in, 1 << 12);
+        in->level_db_q8[k] = fx_sat_i16(in->number[0] + within_size(in, 1 << 12));
     }
 }
 
 static void run_stand_out(const struct input *in, struct output *out, bool is_plain)
 {
     for (uint32_t k = 0; k < in->cells; k++) {
-        out->line[0][k] =
-            TWIN(lm_k_stand_out)(in->level_db_q8 + LM_K_BESIDE + k, in->number[0], in->number[1]);
+        out->line[0][k] = TWIN(lm_k_stand_out)(in->level_db_q8 + LM_K_BESIDE + k,
+                                               (int16_t)in->number[0], (int16_t)in->number[1]);
     }
 }
 
@@ -512,9 +571,10 @@ static void run_side_lobes(const struct input *in, struct output *out, bool is_p
     int16_t side_db_q8[LM_K_LOBES];
     for (uint32_t k = 0; k < LM_K_LOBES; k++) {
         side_db_q8[k] = (int16_t) - (in->other_db_q8[k] & 0x3FFF);
-        out->line[0][k] = (uint32_t)(in->level_db_q8[k] % (1 << 14));
     }
-    TWIN(lm_k_side_lobes)(side_db_q8, in->number[1], signed_line(out->line[0]));
+    struct levels levels = levels_of(in->level_db_q8);
+    TWIN(lm_k_side_lobes)(side_db_q8, (int16_t)in->number[1], levels.db_q8);
+    tell_levels(out->line[0], &levels);
     out->end[0] = out->room = LM_K_LOBES;
 }
 
@@ -544,21 +604,25 @@ static void run_fade(const struct input *in, struct output *out, bool is_plain)
 
 static struct lm_k_receiver receiver_of(const struct input *in)
 {
-    return (struct lm_k_receiver){in->level_db_q8, in->fall_db_q8, in->number[0], row_of(in),
+    return (struct lm_k_receiver){in->noise_db_q8, in->fall_db_q8, in->number[0], row_of(in),
                                   in->entry};
 }
 
 static void run_detect(const struct input *in, struct output *out, bool is_plain)
 {
     const struct lm_k_receiver r = receiver_of(in);
-    TWIN(lm_k_detect)(&r, in->power_q24[0], signed_line(out->line[0]), in->cells);
+    struct levels levels = untouched();
+    TWIN(lm_k_detect)(&r, in->power_q24[0], levels.db_q8, in->cells);
+    tell_levels(out->line[0], &levels);
 }
 
 static void run_detect_in_rain(const struct input *in, struct output *out, bool is_plain)
 {
     const struct lm_k_receiver r = receiver_of(in);
-    const struct lm_k_rain rain = {in->other_db_q8, in->rain_db_q8};
-    TWIN(lm_k_detect_in_rain)(&r, &rain, in->power_q24[0], signed_line(out->line[0]), in->cells);
+    const struct lm_k_rain rain = {in->loss_db_q8, in->rain_db_q8};
+    struct levels levels = untouched();
+    TWIN(lm_k_detect_in_rain)(&r, &rain, in->power_q24[0], levels.db_q8, in->cells);
+    tell_levels(out->line[0], &levels);
 }
 
 static void run_tone(const struct input *in, struct output *out, bool is_plain)
@@ -616,7 +680,6 @@ static const struct kernel kernels[] = {
     {"lm_k_replace", draw_classes, run_replace},
     {"lm_k_light", draw_light, run_light},
     {"lm_k_highest_tangent", draw_light, run_highest_tangent},
-    {"lm_k_class_gain", draw_classes, run_class_gain},
     {"lm_k_water_gain", draw_classes, run_water_gain},
     {"lm_k_layover", draw_layover, run_layover},
     {"lm_k_grain_add", draw_speckle, run_grain_add},
@@ -624,6 +687,7 @@ static const struct kernel kernels[] = {
     {"lm_k_grain_stretch", draw_speckle, run_grain_stretch},
     {"lm_k_gather", draw_small_levels, run_gather},
     {"lm_k_powers_of_levels", draw_small_levels, run_powers_of_levels},
+    {"lm_k_sum_powers", draw_small_levels, run_sum_powers},
     {"lm_k_levels_add", draw_levels, run_levels_add},
     {"lm_k_levels_mean", draw_levels, run_levels_mean},
     {"lm_k_highest", draw_levels, run_highest},

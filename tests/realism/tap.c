@@ -159,7 +159,7 @@ static void draw_patch_line(struct tap *t)
             keep_ground(t, sampled);
         }
     }
-    const int32_t *level_db_q8 = lm_sar_draw_line(&t->sar, &t->map.tiles, &t->tone, &t->line);
+    const int16_t *level_db_q8 = lm_sar_draw_line(&t->sar, &t->map.tiles, &t->tone, &t->line);
     for (uint32_t i = 0; i < CELLS; i++) {
         patch[LEVEL][number][i] = level_db_q8[i + LM_SAR_GUARD];
         patch[GREY][number][i] = t->line.grey[i + LM_SAR_GUARD];

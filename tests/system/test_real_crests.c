@@ -77,7 +77,7 @@ static void map_read(uint8_t lod, const struct lm_ground_path *path)
             lm_tile_cache_service(&map.tiles, 0, 8);
         }
     }
-    lm_illuminate(&map.grid, &map.classes, &map.line, LM_HORIZON_OPEN, &map.lit);
+    lm_illuminate(&map.grid, &map.classes, NULL, &map.line, LM_HORIZON_OPEN, &map.lit);
 }
 
 /* The levels of a line as the radar draws it before anything random: map.lit. */

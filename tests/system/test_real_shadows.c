@@ -32,7 +32,7 @@ struct world {
     void *pool;
     struct lm_sar sar;
     struct lm_line line;
-    int32_t level_q8[LM_CELLS_ROOM];
+    int16_t level_q8[LM_CELLS_ROOM];
 };
 
 struct patch {

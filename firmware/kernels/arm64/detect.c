@@ -67,11 +67,13 @@ static inline int32x4x4_t neon_less(int32x4x4_t a, int32x4x4_t b)
 /* Signal and noise together, less the receiver's fall, of the same bins. */
 static inline void neon_store_sum(const struct lm_k_receiver *r, const struct neon_sum_lines *lines,
                                   size_t i, size_t next, int32x4x4_t signal, int32x4x4_t noise,
-                                  int32_t *level_db_q8)
+                                  int16_t *level_db_q8)
 {
     const int32x4x4_t fall = neon_load_8_and_8(r->fall_db_q8 + i, r->fall_db_q8 + next);
     const int32x4x4_t sum = neon_db_q8_sum(lines->lows, lines->highs, lines->falls, signal, noise);
-    neon_store_8_and_8(level_db_q8 + i, level_db_q8 + next, neon_less(sum, fall));
+    const int32x4x4_t level = neon_less(sum, fall);
+    vst1q_s16(level_db_q8 + i, neon_held_8(level.val[0], level.val[1]));
+    vst1q_s16(level_db_q8 + next, neon_held_8(level.val[2], level.val[3]));
 }
 
 /* The block beside block i / LM_LANES; a block that is left over is done twice at once. */
@@ -84,12 +86,11 @@ static inline size_t neon_next_block(size_t i, uint32_t cells)
 static inline int16x8x2_t neon_signals_of_16(uint32x4x4_t power)
 {
     const uint16x8_t unit = vdupq_n_u16((uint16_t)(LM_K_DETECT_BIAS_DB_Q8 - LM_K_UNIT_Q24_DB_Q8));
-    const uint16x8x2_t some = neon_add_db_q8_of_16((uint16x8x2_t){{unit, unit}}, power);
+    const struct neon_levels some = neon_add_db_q8_of_16((uint16x8x2_t){{unit, unit}}, power);
     int16x8x2_t signal;
     for (size_t n = 0; n < 2; n++) {
-        const uint16x8_t held = vqmovn_high_u32(vqmovn_u32(power.val[2 * n]), power.val[2 * n + 1]);
-        signal.val[n] =
-            vbslq_s16(vceqzq_u16(held), vdupq_n_s16(INT16_MIN), vreinterpretq_s16_u16(some.val[n]));
+        signal.val[n] = vbslq_s16(some.is_none[n], vdupq_n_s16(INT16_MIN),
+                                  vreinterpretq_s16_u16(some.level_db_q8.val[n]));
     }
     return signal;
 }
@@ -110,12 +111,12 @@ static inline int16x8x2_t neon_noise_of_16(const struct lm_k_receiver *r, size_t
 }
 
 void lm_k_detect(const struct lm_k_receiver *receiver, const uint32_t *power_q24,
-                 int32_t *restrict level_q8, uint32_t cells)
+                 int16_t *restrict level_q8, uint32_t cells)
 {
     const struct lm_k_receiver r = *receiver;
     const struct neon_sum_lines lines = neon_sum_lines();
     const int32x4_t rise = vdupq_n_s32(r.rise_db_q8 + LM_K_DETECT_BIAS_DB_Q8);
-    const int16x8_t bias = vdupq_n_s16(-LM_K_DETECT_BIAS_DB_Q8);
+    const int16x8_t bias = vdupq_n_s16(LM_K_DETECT_BIAS_DB_Q8);
     for (size_t i = 0; i < cells; i += NEON_CELLS) {
         const size_t next = neon_next_block(i, cells);
         const uint32x4x4_t power = {{vld1q_u32(power_q24 + i), vld1q_u32(power_q24 + i + 4),
@@ -123,17 +124,17 @@ void lm_k_detect(const struct lm_k_receiver *receiver, const uint32_t *power_q24
         const int16x8x2_t sum =
             neon_db_q8_sum_16(lines.lows, lines.highs, lines.falls, neon_signals_of_16(power),
                               neon_noise_of_16(&r, i, next, rise));
-        const int32x4x4_t wide = {{vaddl_s16(vget_low_s16(sum.val[0]), vget_low_s16(bias)),
-                                   vaddl_high_s16(sum.val[0], bias),
-                                   vaddl_s16(vget_low_s16(sum.val[1]), vget_low_s16(bias)),
-                                   vaddl_high_s16(sum.val[1], bias)}};
-        const int32x4x4_t fall = neon_load_8_and_8(r.fall_db_q8 + i, r.fall_db_q8 + next);
-        neon_store_8_and_8(level_q8 + i, level_q8 + next, neon_less(wide, fall));
+        const size_t at[2] = {i, next};
+        for (size_t n = 0; n < 2; n++) {
+            const int32_t *const fall = r.fall_db_q8 + at[n];
+            const int16x8_t held = neon_held_8(vld1q_s32(fall), vld1q_s32(fall + 4));
+            vst1q_s16(level_q8 + at[n], vqsubq_s16(vqsubq_s16(sum.val[n], bias), held));
+        }
     }
 }
 
 void lm_k_detect_in_rain(const struct lm_k_receiver *receiver, const struct lm_k_rain *in_rain,
-                         const uint32_t *power_q24, int32_t *restrict level_q8, uint32_t cells)
+                         const uint32_t *power_q24, int16_t *restrict level_q8, uint32_t cells)
 {
     const struct lm_k_receiver r = *receiver;
     const struct lm_k_rain w = *in_rain;

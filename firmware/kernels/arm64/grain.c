@@ -3,17 +3,18 @@
 enum { NEON_CELLS = 16 }; /* that a turn takes */
 
 void lm_k_grain_add(const struct lm_k_curve *curve, const int8_t *grain_q5,
-                    int32_t *restrict level_q8, uint32_t cells)
+                    int16_t *restrict level_q8, uint32_t cells)
 {
     const struct neon_curve lines = neon_curve_of(curve);
     for (size_t i = 0; i < cells; i += NEON_CELLS) {
         const int16x8x2_t db_q8 = neon_curve_db_q8(&lines, vld1q_s8(grain_q5 + i));
-        vst1q_s32_x4(level_q8 + i, neon_add_16(vld1q_s32_x4(level_q8 + i), db_q8));
+        const int16x8x2_t level = vld1q_s16_x2(level_q8 + i);
+        vst1q_s16_x2(level_q8 + i, neon_add_16(level, db_q8));
     }
 }
 
 void lm_k_grain_floor(const struct lm_k_curve *curve, const int8_t *grain_q5, int32_t floor_q8,
-                      const int32_t *level_q8, int32_t *restrict noisy_q8, uint32_t cells)
+                      const int16_t *level_q8, int16_t *restrict noisy_q8, uint32_t cells)
 {
     const struct neon_curve lines = neon_curve_of(curve);
     const uint8x16x4_t lows = vld1q_u8_x4(fx_table_db_sum_lines[0]);
@@ -21,18 +22,10 @@ void lm_k_grain_floor(const struct lm_k_curve *curve, const int8_t *grain_q5, in
     const uint8x16x4_t falls = vld1q_u8_x4(fx_table_db_sum_lines[2]);
     const int16x8_t floor = neon_held_8(vdupq_n_s32(floor_q8), vdupq_n_s32(floor_q8));
     for (size_t i = 0; i < cells; i += NEON_CELLS) {
-        const int32x4x4_t wide = vld1q_s32_x4(level_q8 + i);
-        const int16x8x2_t level = {
-            {neon_held_8(wide.val[0], wide.val[1]), neon_held_8(wide.val[2], wide.val[3])}};
-        const int16x8x2_t sum =
-            neon_db_q8_sum_16(lows, highs, falls, level, (int16x8x2_t){{floor, floor}});
+        const int16x8x2_t sum = neon_db_q8_sum_16(lows, highs, falls, vld1q_s16_x2(level_q8 + i),
+                                                  (int16x8x2_t){{floor, floor}});
         const int16x8x2_t db_q8 = neon_curve_db_q8(&lines, vld1q_s8(grain_q5 + i));
-        int32x4x4_t noisy;
-        for (size_t n = 0; n < 2; n++) {
-            noisy.val[2 * n] = vaddl_s16(vget_low_s16(sum.val[n]), vget_low_s16(db_q8.val[n]));
-            noisy.val[2 * n + 1] = vaddl_high_s16(sum.val[n], db_q8.val[n]);
-        }
-        vst1q_s32_x4(noisy_q8 + i, noisy);
+        vst1q_s16_x2(noisy_q8 + i, neon_add_16(sum, db_q8));
     }
 }
 

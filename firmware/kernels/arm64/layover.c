@@ -34,7 +34,8 @@ struct laid {
 /* Sixteen cells, of which `number` is the first. */
 struct group {
     const uint32_t *cell;
-    const int32_t *elevation_m_q14, *level_db_q8;
+    const int32_t *elevation_m_q14;
+    const int16_t *level_db_q8;
     int32_t number;
 };
 
@@ -232,7 +233,7 @@ static inline void lay_group(struct laid *laid, const struct tables *t,
                              uint32_t displayed)
 {
     const int16x8_t most = vdupq_n_s16(LM_K_LAYOVER_MOST_DB_Q8);
-    int16x8x2_t level_db_q8 = narrow_16(neon_load_8_and_8(g->level_db_q8, g->level_db_q8 + 8));
+    int16x8x2_t level_db_q8 = vld1q_s16_x2(g->level_db_q8);
     int16x8x2_t away_16ths = displace(t, line, g, level_db_q8);
     uint16x8x2_t below;
     struct pass p;
@@ -261,28 +262,23 @@ static inline void lay_group(struct laid *laid, const struct tables *t,
     }
 }
 
-/* Levels of the words of a line. */
-static inline void widen(const uint16_t *word, int32_t *level_db_q8, int32_t count)
+/* Make levels of the words of a line, in place. */
+static inline void count_from_0(uint16_t *word, int32_t count)
 {
-    const uint32x4_t shadow = vreinterpretq_u32_s32(vdupq_n_s32(LM_LEVEL_SHADOW));
+    const uint16x8_t shadow = vdupq_n_u16((uint16_t)LM_LEVEL_SHADOW);
     for (int32_t i = 0; i < count; i += GROUP) {
         const uint16x8x2_t levels = load_16(word + i);
-        int32x4x4_t wide;
-        for (size_t n = 0; n < 2; n++) {
-            const uint16x8_t w = levels.val[n];
-            wide.val[2 * n] = vreinterpretq_s32_u32(vaddw_u16(shadow, vget_low_u16(w)));
-            wide.val[2 * n + 1] = vreinterpretq_s32_u32(vaddw_high_u16(shadow, w));
-        }
-        vst1q_s32_x4(level_db_q8 + i, wide);
+        store_16(word + i, (uint16x8x2_t){{veorq_u16(levels.val[0], shadow),
+                                           veorq_u16(levels.val[1], shadow)}});
     }
 }
 
-void lm_k_layover(const struct lm_k_layover *lent, int32_t *laid_db_q8)
+void lm_k_layover(const struct lm_k_layover *lent, int16_t *laid_db_q8)
 {
     const struct lm_k_layover copy = *lent, *const line = &copy; /* no store can change it */
     const int32_t margin = LM_K_LAYOVER_MARGIN, cells = (int32_t)line->cells;
     const struct tables tables = load_tables(line);
-    uint16_t word[LM_K_LAYOVER_ROOM];
+    uint16_t *const word = (uint16_t *)laid_db_q8;
     struct laid laid = {word + margin, -margin};
     const uint16x8x2_t dark = {{vdupq_n_u16(0), vdupq_n_u16(0)}};
     for (int32_t i = 0; i < margin + cells + margin; i += GROUP) {
@@ -295,5 +291,5 @@ void lm_k_layover(const struct lm_k_layover *lent, int32_t *laid_db_q8)
         g.elevation_m_q14 += GROUP;
         g.level_db_q8 += GROUP;
     }
-    widen(word + margin, laid_db_q8 + margin, cells);
+    count_from_0(word + margin, cells);
 }

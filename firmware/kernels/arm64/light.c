@@ -12,9 +12,10 @@ enum { NEON_CELLS = 16 }; /* that a turn takes */
 _Static_assert(LM_CELLS_MAX % NEON_CELLS == 0, "a whole number of turns fits in a line's arrays");
 _Static_assert(LM_K_CODES == 16, "a vector looks up all codes at once");
 
-/* Heights of the codes, lower bytes and upper bytes; edges of the marks, marks of the classes. */
+/* Heights of the codes and gains of the classes, lower bytes and upper bytes; edges of the marks,
+ * marks of the classes. */
 struct neon_class_lut {
-    uint8x16_t height_dm[2], edge_db_q3, mark;
+    uint8x16_t height_dm[2], gain_db_q8[2], edge_db_q3, mark;
 };
 
 /* What a turn takes over from the one before it. */
@@ -31,24 +32,28 @@ struct neon_hidden {
 
 /* Where a turn's cells are. */
 struct neon_place {
-    const uint32_t *cell, *elevation_m_q14, *fall_m_q14, *gain_db_q8;
+    const uint32_t *cell, *elevation_m_q14, *fall_m_q14;
+    const int16_t *gain_db_q8;
     const int32_t *inverse_range;
-    int32_t *horizon, *level_db_q8;
+    int32_t *horizon;
+    int16_t *level_db_q8;
     uint8_t *behind_shore;
 };
 
-static inline void neon_set_heights(struct neon_class_lut *l, const struct lm_k_tops *tops)
+/* Lower and upper bytes of sixteen numbers. */
+static inline void neon_set_bytes(uint8x16_t bytes[2], const uint16_t *from)
 {
-    const uint8x16_t low = vreinterpretq_u8_u16(vld1q_u16(tops->height_dm_of_code));
-    const uint8x16_t high = vreinterpretq_u8_u16(vld1q_u16(tops->height_dm_of_code + 8));
-    l->height_dm[0] = vuzp1q_u8(low, high);
-    l->height_dm[1] = vuzp2q_u8(low, high);
+    const uint8x16_t low = vreinterpretq_u8_u16(vld1q_u16(from));
+    const uint8x16_t high = vreinterpretq_u8_u16(vld1q_u16(from + 8));
+    bytes[0] = vuzp1q_u8(low, high);
+    bytes[1] = vuzp2q_u8(low, high);
 }
 
 static inline struct neon_class_lut neon_class_lut_of(const struct lm_k_lit_line *line)
 {
     struct neon_class_lut l;
-    neon_set_heights(&l, &line->tops);
+    neon_set_bytes(l.height_dm, line->tops.height_dm_of_code);
+    neon_set_bytes(l.gain_db_q8, (const uint16_t *)line->class_gain_db_q8);
     l.edge_db_q3 = vsetq_lane_u8(line->edge_structure_db_q3, vdupq_n_u8(0), LM_K_STRUCTURE);
     l.edge_db_q3 = vsetq_lane_u8(line->edge_trees_db_q3, l.edge_db_q3, LM_K_TREES);
     l.mark = vld1q_u8(line->mark_of_class);
@@ -108,8 +113,8 @@ static inline uint8x16_t neon_edges(const struct neon_class_lut *l, struct neon_
 
 /* What the cells show but for gain: edge, reflectivity and the horizon's rise. `more_q8` is that of
  * the cells' upper halves, which may be negative and wraps. */
-static inline uint16x8x2_t neon_shown(uint8x16_t edge_db_q3, uint16x8x2_t cells,
-                                      uint16x8x2_t more_q8, uint32x4x4_t rise)
+static inline struct neon_levels neon_shown(uint8x16_t edge_db_q3, uint16x8x2_t cells,
+                                            uint16x8x2_t more_q8, uint32x4x4_t rise)
 {
     uint16x8x2_t own_q8 = {
         {vshll_n_u8(vget_low_u8(edge_db_q3), 5), vshll_high_n_u8(edge_db_q3, 5)}};
@@ -120,6 +125,21 @@ static inline uint16x8x2_t neon_shown(uint8x16_t edge_db_q3, uint16x8x2_t cells,
                                     vandq_u16(cells.val[n], vdupq_n_u16(0xFF00)), 1);
     }
     return neon_add_db_q8_of_16(own_q8, rise);
+}
+
+/* Store the levels of sixteen cells: what they show, of which LM_LEVEL_SHADOW is 0, and the gains
+ * of place and class. */
+static inline void neon_store_levels(const struct neon_place *at, struct neon_levels shown,
+                                     uint16x8x2_t class_gain_db_q8)
+{
+    for (size_t n = 0; n < 2; n++) {
+        const int16x8_t gain_q8 = vqaddq_s16(vld1q_s16(at->gain_db_q8 + 8 * n),
+                                             vreinterpretq_s16_u16(class_gain_db_q8.val[n]));
+        const int16x8_t shown_q8 =
+            vreinterpretq_s16_u16(veorq_u16(shown.level_db_q8.val[n], vdupq_n_u16(0x8000)));
+        vst1q_s16(at->level_db_q8 + 8 * n, vbslq_s16(shown.is_none[n], vdupq_n_s16(LM_LEVEL_SHADOW),
+                                                     vqaddq_s16(shown_q8, gain_q8)));
+    }
 }
 
 /* Sixteen cells; their horizon, level and whether they are behind a shore are stored. */
@@ -139,18 +159,11 @@ static inline __attribute__((always_inline)) void neon_cells(const struct neon_c
         vst1q_s32(at->horizon + 4 * n, b->horizon);
     }
     uint8x16_t left;
-    const uint8x16_t edge_db_q3 = neon_edges(l, b, hidden->bytes, vshrq_n_u8(lower, 4), &left);
+    const uint8x16_t class_index = vshrq_n_u8(lower, 4);
+    const uint8x16_t edge_db_q3 = neon_edges(l, b, hidden->bytes, class_index, &left);
     vst1q_u8(at->behind_shore, left);
-    const uint16x8x2_t shown_q8 = neon_shown(edge_db_q3, cells, neon_upper_halves(words), rise);
-    const uint32x4x4_t gain_db_q8 = vld1q_u32_x4(at->gain_db_q8);
-    for (size_t n = 0; n < 4; n++) {
-        const uint16x8_t pair_q8 = shown_q8.val[n / 2];
-        const uint32x4_t lit_db_q8 = n % 2 ? vaddw_high_u16(gain_db_q8.val[n], pair_q8)
-                                           : vaddw_u16(gain_db_q8.val[n], vget_low_u16(pair_q8));
-        vst1q_s32(at->level_db_q8 + 4 * n,
-                  vbslq_s32(vceqzq_u32(rise.val[n]), vdupq_n_s32(LM_LEVEL_SHADOW),
-                            vreinterpretq_s32_u32(lit_db_q8)));
-    }
+    neon_store_levels(at, neon_shown(edge_db_q3, cells, neon_upper_halves(words), rise),
+                      neon_words_of_16(l->gain_db_q8, class_index));
     at->cell += NEON_CELLS;
     at->elevation_m_q14 += NEON_CELLS;
     at->fall_m_q14 += NEON_CELLS;
@@ -189,13 +202,13 @@ static inline uint64_t neon_marks(const struct lm_k_lit_line *line, uint32_t i)
     return vget_lane_u64(vreinterpret_u64_u8(mark), 0);
 }
 
-/* Add to four levels what is positive of the shore, where there is light. */
-static inline void neon_brighten(int32_t *level_db_q8, int32x4_t shore_db_q8)
+/* Add to eight levels what is positive of the shore, where there is light. */
+static inline void neon_brighten(int16_t *level_db_q8, int32x4_t low_db_q8, int32x4_t high_db_q8)
 {
-    const int32x4_t old_q8 = vld1q_s32(level_db_q8), zero = vdupq_n_s32(0);
-    const uint32x4_t is_dark = vceqq_s32(old_q8, vdupq_n_s32(LM_LEVEL_SHADOW));
-    const int32x4_t more_q8 = vbslq_s32(is_dark, zero, vmaxq_s32(shore_db_q8, zero));
-    vst1q_s32(level_db_q8, vaddq_s32(old_q8, more_q8));
+    const int16x8_t old_q8 = vld1q_s16(level_db_q8), zero = vdupq_n_s16(0);
+    const uint16x8_t is_dark = vceqq_s16(old_q8, vdupq_n_s16(LM_LEVEL_SHADOW));
+    const int16x8_t shore_q8 = vmaxq_s16(neon_held_8(low_db_q8, high_db_q8), zero);
+    vst1q_s16(level_db_q8, vqaddq_s16(old_q8, vbslq_s16(is_dark, zero, shore_q8)));
 }
 
 /* The shore from cell i on: whole groups of eight cells without water, and then one by one. */
@@ -209,10 +222,8 @@ static inline void neon_add_shore(const struct lm_k_lit_line *line, uint32_t i)
             break;
         }
         const int32x4_t all_q8 = vdupq_n_s32(shore_db_q8);
-        for (size_t k = 0; k < 8; k += 4) {
-            neon_brighten(line->level_db_q8 + i + k,
-                          vmlsq_n_s32(all_q8, vld1q_s32(number + k), fall_db_q8));
-        }
+        neon_brighten(line->level_db_q8 + i, vmlsq_n_s32(all_q8, vld1q_s32(number), fall_db_q8),
+                      vmlsq_n_s32(all_q8, vld1q_s32(number + 4), fall_db_q8));
     }
     add_shore(line, i, shore_db_q8);
 }
@@ -258,7 +269,8 @@ void lm_k_light(const struct lm_k_lit_line *line)
     uint8_t behind_shore[LM_CELLS_MAX + LM_K_SHORE_STRETCH];
     const struct lm_k_tops *const tops = &line->tops;
     const size_t hidden = tops->first % NEON_CELLS, first = tops->first - hidden;
-    int32_t *const horizon = line->horizon, *const level_db_q8 = line->level_db_q8;
+    int32_t *const horizon = line->horizon;
+    int16_t *const level_db_q8 = line->level_db_q8;
     horizon[0] = line->start;
     for (size_t k = 0; k < first; k++) {
         horizon[k + 1] = line->start;
@@ -269,7 +281,7 @@ void lm_k_light(const struct lm_k_lit_line *line)
     struct neon_place at = {.cell = tops->cell + first,
                             .elevation_m_q14 = (const uint32_t *)tops->elevation_m_q14 + first,
                             .fall_m_q14 = (const uint32_t *)tops->fall_m_q14 + first,
-                            .gain_db_q8 = (const uint32_t *)line->gain_db_q8 + first,
+                            .gain_db_q8 = line->gain_db_q8 + first,
                             .inverse_range = tops->inverse_range + first,
                             .horizon = horizon + first + 1,
                             .level_db_q8 = level_db_q8 + first,
@@ -302,7 +314,7 @@ int32_t lm_k_highest_tangent(const struct lm_k_tops *tops)
     }
     const uint32_t last = tops->cells - NEON_CELLS;
     struct neon_class_lut l;
-    neon_set_heights(&l, tops);
+    neon_set_bytes(l.height_dm, tops->height_dm_of_code);
     int32x4_t highest = vdupq_n_s32(INT32_MIN);
     for (uint32_t i = tops->first, end = 0; end < tops->cells; i = end) {
         const uint32_t begin = i < last ? i : last;

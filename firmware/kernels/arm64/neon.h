@@ -78,10 +78,17 @@ static inline int32x4x2_t neon_add_db_q8(int32x4x2_t level_db_q8, uint32x4x2_t p
                           vsraq_n_s32(level_db_q8.val[1], vreinterpretq_s32_u32(high), 5)}};
 }
 
+/* Sixteen levels, and where the power was 0: there a level means nothing. */
+struct neon_levels {
+    uint16x8x2_t level_db_q8;
+    uint16x8_t is_none[2];
+};
+
 /* The same of sixteen, where all fits in 16 bits: the decibels take 24659. An octave's fraction of
  * a step is added before it is cut off, whole steps are behind. */
-static inline uint16x8x2_t neon_add_db_q8_of_16(uint16x8x2_t level_db_q8, uint32x4x4_t power)
+static inline struct neon_levels neon_add_db_q8_of_16(uint16x8x2_t level_db_q8, uint32x4x4_t power)
 {
+    struct neon_levels sum;
     const uint16x8_t top[2] = {neon_tops(power.val[0], power.val[1]),
                                neon_tops(power.val[2], power.val[3])};
     const uint8x16_t mantissa = vshrn_high_n_u16(vshrn_n_u16(top[0], 7), top[1], 7);
@@ -98,10 +105,11 @@ static inline uint16x8x2_t neon_add_db_q8_of_16(uint16x8x2_t level_db_q8, uint32
                                             vreinterpretq_u16_u32(vclzq_u32(power.val[2 * n + 1])));
         const uint16x8_t octave = veorq_u16(zeros, vdupq_n_u16(31));
         const uint16x8_t fine_q13 = vmlaq_n_u16(db_q13[n], octave, FX_DB_PER_OCTAVE_Q13 % 32);
-        level_db_q8.val[n] = vmlaq_n_u16(vsraq_n_u16(level_db_q8.val[n], fine_q13, 5), octave,
-                                         FX_DB_PER_OCTAVE_Q13 / 32);
+        sum.level_db_q8.val[n] = vmlaq_n_u16(vsraq_n_u16(level_db_q8.val[n], fine_q13, 5), octave,
+                                             FX_DB_PER_OCTAVE_Q13 / 32);
+        sum.is_none[n] = vceqq_u16(zeros, vdupq_n_u16(32));
     }
-    return level_db_q8;
+    return sum;
 }
 
 /* Distance of eight levels, in steps of the table. */
@@ -214,9 +222,8 @@ static inline void neon_store_8_and_8(int32_t *to, int32_t *and_to, int32x4x4_t 
 }
 
 /* Octaves in Q8 above 2^-31 for fx_power_q24_vec of eight: -31.0 up to just below 1.0. */
-static inline int16x8_t neon_octaves_q8(int32x4_t low_q8, int32x4_t high_q8)
+static inline int16x8_t neon_octaves_q8(int16x8_t db_q8)
 {
-    const int16x8_t db_q8 = vqmovn_high_s32(vqmovn_s32(low_q8), high_q8);
     const int16x8_t octaves_q8 =
         vaddq_s16(vqrdmulhq_n_s16(db_q8, FX_OCTAVES_PER_DB_Q15), vdupq_n_s16(-7 * 256));
     return vminq_s16(vmaxq_s16(octaves_q8, vdupq_n_s16(-31 * 256)), vdupq_n_s16(255));
@@ -234,10 +241,9 @@ static inline uint32x4x2_t neon_shift_q15(uint16x8_t x_q15, int16x8_t up)
 
 /* fx_power_q24_vec of sixteen. Of the lines of its table the lower byte of the octaves chooses
  * one; the upper byte says how far down. */
-static inline uint32x4x4_t neon_power_q24(int32x4x4_t db_q8)
+static inline uint32x4x4_t neon_power_q24(int16x8_t low_db_q8, int16x8_t high_db_q8)
 {
-    const int16x8_t low_q8 = neon_octaves_q8(db_q8.val[0], db_q8.val[1]);
-    const int16x8_t high_q8 = neon_octaves_q8(db_q8.val[2], db_q8.val[3]);
+    const int16x8_t low_q8 = neon_octaves_q8(low_db_q8), high_q8 = neon_octaves_q8(high_db_q8);
     const uint8x16_t place = vuzp1q_u8(vreinterpretq_u8_s16(low_q8), vreinterpretq_u8_s16(high_q8));
     const uint8x16_t line = vshrq_n_u8(place, 4);
     const uint8x16_t base[2] = {vqtbl1q_u8(vld1q_u8(fx_table_power_lines[0]), line),

@@ -43,13 +43,10 @@ static inline int16x8x2_t neon_curve_db_q8(const struct neon_curve *curve, int8x
 }
 
 /* Sixteen levels, each with its speckle added. */
-static inline int32x4x4_t neon_add_16(int32x4x4_t level_db_q8, int16x8x2_t db_q8)
+static inline int16x8x2_t neon_add_16(int16x8x2_t level_db_q8, int16x8x2_t db_q8)
 {
-    for (size_t n = 0; n < 2; n++) {
-        level_db_q8.val[2 * n] = vaddw_s16(level_db_q8.val[2 * n], vget_low_s16(db_q8.val[n]));
-        level_db_q8.val[2 * n + 1] = vaddw_high_s16(level_db_q8.val[2 * n + 1], db_q8.val[n]);
-    }
-    return level_db_q8;
+    return (int16x8x2_t){{vqaddq_s16(level_db_q8.val[0], db_q8.val[0]),
+                          vqaddq_s16(level_db_q8.val[1], db_q8.val[1])}};
 }
 
 #endif

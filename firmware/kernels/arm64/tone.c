@@ -10,17 +10,15 @@ struct tone_window {
     int16x8_t minus_step_log2;
 };
 
-/* Steps of eight levels. What does not fit 16 bits is beyond the window; above its start, 16 bits
- * without a sign hold all of it. */
-static inline uint16x8_t neon_step(const struct tone_window *w, const int32_t *level_db_q8)
+/* Steps of eight levels. Above the window's start, 16 bits without a sign hold all of it. */
+static inline uint16x8_t neon_step(const struct tone_window *w, const int16_t *level_db_q8)
 {
-    const int16x8_t level_of_16 =
-        vqmovn_high_s32(vqmovn_s32(vld1q_s32(level_db_q8)), vld1q_s32(level_db_q8 + 4));
-    const int16x8_t within = vminq_s16(vmaxq_s16(level_of_16, w->black_db_q8), w->white_db_q8);
+    const int16x8_t level = vld1q_s16(level_db_q8);
+    const int16x8_t within = vminq_s16(vmaxq_s16(level, w->black_db_q8), w->white_db_q8);
     return vshlq_u16(vsubq_u16(vreinterpretq_u16_s16(within), w->start_db_q8), w->minus_step_log2);
 }
 
-void lm_k_tone(const struct lm_k_tone_curve *t, const int32_t *level_q8, uint8_t *restrict grey,
+void lm_k_tone(const struct lm_k_tone_curve *t, const int16_t *level_q8, uint8_t *restrict grey,
                uint32_t cells)
 {
     if (!t->pieces) {

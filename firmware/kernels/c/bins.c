@@ -1,17 +1,29 @@
 #include "fx/log.h"
+#include "fx/sat.h"
 #include "lm/kernels_radar.h"
 
-void lm_k_gather(const int32_t *restrict level_db_q8, const int32_t *restrict cell_of,
-                 int32_t *restrict bin_db_q8, uint32_t cells)
+void lm_k_gather(const int16_t *restrict level_db_q8, const int32_t *restrict cell_of,
+                 int16_t *restrict bin_db_q8, uint32_t cells)
 {
     for (uint32_t i = 0; i < cells; i++) {
         bin_db_q8[i] = level_db_q8[cell_of[i]];
     }
 }
 
-void lm_k_powers_of_levels(uint32_t *line, uint32_t cells)
+void lm_k_powers_of_levels(const int16_t *restrict level_db_q8, uint32_t *restrict power_q24,
+                           uint32_t cells)
 {
     for (uint32_t i = 0; i < cells; i++) {
-        line[i] = fx_power_q24_vec((int32_t)line[i]);
+        power_q24[i] = fx_power_q24_vec(level_db_q8[i]);
     }
+}
+
+uint32_t lm_k_sum_powers(const int16_t *level_db_q8, int16_t most_db_q8, uint32_t count)
+{
+    uint32_t sum_q24 = 0;
+    for (uint32_t i = 0; i < count; i++) {
+        const int32_t over_db_q8 = level_db_q8[(int32_t)(i * LM_K_STRIDE)] - most_db_q8;
+        sum_q24 += fx_power_q24_vec(fx_min_i32(over_db_q8, 0));
+    }
+    return sum_q24;
 }

@@ -15,7 +15,7 @@ static inline int32_t held(int32_t db_q8)
 }
 
 void lm_k_detect(const struct lm_k_receiver *receiver, const uint32_t *restrict power_q24,
-                 int32_t *restrict level_db_q8, uint32_t cells)
+                 int16_t *restrict level_db_q8, uint32_t cells)
 {
     const struct lm_k_receiver r = *receiver;
     const int32_t rise = r.rise_db_q8 + LM_K_DETECT_BIAS_DB_Q8;
@@ -24,13 +24,13 @@ void lm_k_detect(const struct lm_k_receiver *receiver, const uint32_t *restrict 
     for (uint32_t i = 0; i < cells; i++) {
         const int32_t noise = held(held(r.noise_db_q8[i] + rise) + draw_db_q8[i]);
         const int32_t signal = held(signal_db_q8(power_q24[i]) + LM_K_DETECT_BIAS_DB_Q8);
-        level_db_q8[i] =
-            held(fx_db_q8_sum_vec(signal, noise)) - LM_K_DETECT_BIAS_DB_Q8 - r.fall_db_q8[i];
+        const int32_t sum = held(fx_db_q8_sum_vec(signal, noise)) - LM_K_DETECT_BIAS_DB_Q8;
+        level_db_q8[i] = fx_sat_i16(held(sum) - held(r.fall_db_q8[i]));
     }
 }
 
 void lm_k_detect_in_rain(const struct lm_k_receiver *receiver, const struct lm_k_rain *in_rain,
-                         const uint32_t *restrict power_q24, int32_t *restrict level_db_q8,
+                         const uint32_t *restrict power_q24, int16_t *restrict level_db_q8,
                          uint32_t cells)
 {
     const struct lm_k_receiver r = *receiver;
@@ -44,6 +44,6 @@ void lm_k_detect_in_rain(const struct lm_k_receiver *receiver, const struct lm_k
         /* draw() fills every cell.
          * NOLINTNEXTLINE(clang-analyzer-core.UndefinedBinaryOperatorResult) */
         const int32_t drawn_db_q8 = noise_db_q8 + draw_db_q8[i];
-        level_db_q8[i] = fx_db_q8_sum_vec(left_db_q8, drawn_db_q8) - r.fall_db_q8[i];
+        level_db_q8[i] = fx_sat_i16(fx_db_q8_sum_vec(left_db_q8, drawn_db_q8) - r.fall_db_q8[i]);
     }
 }

@@ -1,29 +1,25 @@
 #include "curve.h"
 #include "fx/log.h"
+#include "fx/sat.h"
 
 void lm_k_grain_add(const struct lm_k_curve *curve, const int8_t *grain_q5,
-                    int32_t *restrict level_db_q8, uint32_t cells)
+                    int16_t *restrict level_db_q8, uint32_t cells)
 {
     const int32_t *base_db_q8 = curve->base_db_q8, *rise_db_q8 = curve->rise_db_q8;
     for (uint32_t i = 0; i < cells; i++) {
-        level_db_q8[i] += curve_db_q8(base_db_q8, rise_db_q8, grain_q5[i]);
+        level_db_q8[i] =
+            fx_sat_i16(level_db_q8[i] + curve_db_q8(base_db_q8, rise_db_q8, grain_q5[i]));
     }
 }
 
-/* Within 16 bits. */
-static inline int32_t held(int32_t db_q8)
-{
-    return fx_clamp_i32(db_q8, INT16_MIN, INT16_MAX);
-}
-
 void lm_k_grain_floor(const struct lm_k_curve *curve, const int8_t *grain_q5, int32_t floor_db_q8,
-                      const int32_t *level_db_q8, int32_t *restrict noisy_db_q8, uint32_t cells)
+                      const int16_t *level_db_q8, int16_t *restrict noisy_db_q8, uint32_t cells)
 {
     const int32_t *base_db_q8 = curve->base_db_q8, *rise_db_q8 = curve->rise_db_q8;
-    const int32_t floor = held(floor_db_q8);
+    const int32_t floor = fx_sat_i16(floor_db_q8);
     for (uint32_t i = 0; i < cells; i++) {
-        noisy_db_q8[i] = held(fx_db_q8_sum_vec(held(level_db_q8[i]), floor)) +
-                         curve_db_q8(base_db_q8, rise_db_q8, grain_q5[i]);
+        const int16_t sum = fx_sat_i16(fx_db_q8_sum_vec(level_db_q8[i], floor));
+        noisy_db_q8[i] = fx_sat_i16(sum + curve_db_q8(base_db_q8, rise_db_q8, grain_q5[i]));
     }
 }
 

@@ -19,7 +19,7 @@ static const int32_t share_db_q8[17] = {0,    -72,   -148,  -231,  -320,  -417, 
 
 /* The line as it is laid over. */
 struct laid {
-    int32_t *level_db_q8; /* of cell 0; nothing is there yet from entry `filled` on */
+    int16_t *level_db_q8; /* of cell 0; nothing is there yet from entry `filled` on */
     int32_t filled;
 };
 
@@ -30,24 +30,19 @@ struct pass {
     int32_t place_16ths[GROUP]; /* each cell's displacement from there: 0..32, or NOT_NOW */
 };
 
-static inline int32_t sat_i16(int32_t x)
-{
-    return fx_clamp_i32(x, INT16_MIN, INT16_MAX);
-}
-
 /* How far the cells of a group are displaced away from the radar, in sixteenths of a cell. Products
  * are below 2^30 * 2^31. `height_16ths` is that by the height code. */
 static void displace(const struct lm_k_layover *l, const int32_t height_16ths[LM_K_CODES],
                      uint32_t group, int32_t away_16ths[GROUP])
 {
     const int32_t *elevation_m_q14 = l->elevation_m_q14 + group;
-    const int32_t *level_db_q8 = l->level_db_q8 + group;
+    const int16_t *level_db_q8 = l->level_db_q8 + group;
     const uint32_t *cell = l->cell + group;
     for (uint32_t k = 0; k < GROUP; k++) {
         const int64_t below_m_q14 = l->reference_m_q14 - elevation_m_q14[k];
         const int64_t terrain = (below_m_q14 * l->sixteenths_q31 + (1 << 30)) >> 31;
         const int32_t away =
-            sat_i16(sat_i16((int32_t)terrain) - height_16ths[cell[k] % LM_K_CODES]);
+            fx_sat_i16(fx_sat_i16((int32_t)terrain) - height_16ths[cell[k] % LM_K_CODES]);
         away_16ths[k] = level_db_q8[k] <= LM_LEVEL_SHADOW / 2 ? NOWHERE : away;
     }
 }
@@ -84,8 +79,8 @@ static inline int32_t share(int32_t level_db_q8, int32_t gone_16ths)
 
 /* Sums of shares, from the pass's first cell on: those of the cells at hand, and what the cells
  * before them have left there, if these were the last so far. Returns their number. */
-static uint32_t sum_shares(const struct pass *p, const int32_t *level_db_q8,
-                           const int32_t *left_db_q8, int32_t sum_db_q8[GROUP + 2])
+static uint32_t sum_shares(const struct pass *p, const int16_t *level_db_q8,
+                           const int16_t *left_db_q8, int32_t sum_db_q8[GROUP + 2])
 {
     int32_t own[GROUP], next[GROUP + 1], second[GROUP + 2];
     next[0] = left_db_q8[0];
@@ -112,37 +107,42 @@ static uint32_t sum_shares(const struct pass *p, const int32_t *level_db_q8,
 }
 
 /* Add a group that moves by whole cells to where nothing is yet. */
-static void copy(struct laid *laid, const struct pass *p, const int32_t *level_db_q8)
+static void copy(struct laid *laid, const struct pass *p, const int16_t *level_db_q8)
 {
     for (uint32_t k = 0; k < GROUP; k++) {
-        laid->level_db_q8[p->first + (int32_t)k] = share(level_db_q8[k], p->place_16ths[k]);
+        const int32_t own_db_q8 = share(level_db_q8[k], p->place_16ths[k]);
+        laid->level_db_q8[p->first + (int32_t)k] = (int16_t)own_db_q8;
     }
     laid->filled = p->first + GROUP;
 }
 
-static void add(struct laid *laid, const struct pass *p, const int32_t *level_db_q8)
+/* A line's levels together are at most LM_K_LAYOVER_MOST_DB_Q8 and 27 dB: sums take 16 bits. */
+static void add(struct laid *laid, const struct pass *p, const int16_t *level_db_q8)
 {
-    const int32_t nothing_db_q8[2] = {NOTHING_DB_Q8, NOTHING_DB_Q8};
-    int32_t sum_db_q8[GROUP + 2], *const to_db_q8 = laid->level_db_q8 + p->first;
+    const int16_t nothing_db_q8[2] = {NOTHING_DB_Q8, NOTHING_DB_Q8};
+    int32_t sum_db_q8[GROUP + 2];
+    int16_t *const to_db_q8 = laid->level_db_q8 + p->first;
     const int32_t beyond = p->first + (p->most_16ths <= 16 ? 1 : 2);
     const bool is_new = beyond >= laid->filled;
     const uint32_t count = sum_shares(p, level_db_q8, is_new ? to_db_q8 : nothing_db_q8, sum_db_q8);
     if (is_new) {
         for (uint32_t k = 0; k < GROUP; k++) {
-            to_db_q8[k] = sum_db_q8[k];
+            to_db_q8[k] = (int16_t)sum_db_q8[k];
         }
     } else {
         for (uint32_t k = 0; k < GROUP; k++) {
-            to_db_q8[k] = fx_db_q8_sum_vec(sum_db_q8[k], to_db_q8[k]);
+            to_db_q8[k] = (int16_t)fx_db_q8_sum_vec(sum_db_q8[k], to_db_q8[k]);
         }
     }
     for (uint32_t k = GROUP; k < count; k++) {
-        to_db_q8[k] = is_new ? sum_db_q8[k] : fx_db_q8_sum_vec(sum_db_q8[k], to_db_q8[k]);
+        const int32_t all_db_q8 =
+            is_new ? sum_db_q8[k] : fx_db_q8_sum_vec(sum_db_q8[k], to_db_q8[k]);
+        to_db_q8[k] = (int16_t)all_db_q8;
     }
     laid->filled = fx_max_i32(laid->filled, beyond + GROUP);
 }
 
-void lm_k_layover(const struct lm_k_layover *line, int32_t *laid_db_q8)
+void lm_k_layover(const struct lm_k_layover *line, int16_t *laid_db_q8)
 {
     const int32_t margin = LM_K_LAYOVER_MARGIN, cells = (int32_t)line->cells;
     struct laid laid = {laid_db_q8 + margin, -margin};
@@ -155,7 +155,7 @@ void lm_k_layover(const struct lm_k_layover *line, int32_t *laid_db_q8)
         laid_db_q8[i] = LM_LEVEL_SHADOW;
     }
     for (uint32_t group = 0; group < line->cells; group += GROUP) {
-        const int32_t *level_db_q8 = line->level_db_q8 + group;
+        const int16_t *level_db_q8 = line->level_db_q8 + group;
         int32_t away_16ths[GROUP];
         struct pass p;
         displace(line, height_16ths, group, away_16ths);

@@ -9,9 +9,9 @@
 #include "lm/tile_point.h"
 
 /* Words that vectors look up: heights of the codes; of the classes, the brightness of the leading
- * edge times 2^LM_K_MARK_BITS, and the mark. */
+ * edge times 2^LM_K_MARK_BITS, and the mark; and their gains. */
 struct words {
-    int32_t height_m_q14[LM_K_CODES], kind[LM_K_CODES];
+    int32_t height_m_q14[LM_K_CODES], kind[LM_K_CODES], gain_db_q8[LM_K_CODES];
 };
 
 /* What is known of a line on the way. Cell i is entry LM_LANES + i, for what a cell is compared
@@ -21,6 +21,7 @@ struct work {
     int32_t tangent[LM_LANES + LM_CELLS_ROOM]; /* of the cell's top */
     int32_t of_four[LM_LANES + LM_CELLS_ROOM]; /* the largest of the cell's and the three before */
     int32_t horizon[LM_LANES + LM_CELLS_ROOM]; /* before the cell */
+    int32_t shown_db_q8[LM_CELLS_ROOM];        /* by cell: its level but for rise and edges */
 };
 _Static_assert(sizeof(struct work) == LM_K_LIGHT_WORK * sizeof(int32_t), "the scratch is lent");
 
@@ -42,25 +43,27 @@ static void set_words(const struct lm_k_lit_line *line, struct words *words)
         const int32_t mark = line->mark_of_class[n];
         words->kind[n] =
             (mark & LM_K_STRUCTURE) * of_structure + (mark & LM_K_TREES) * of_trees + mark;
+        words->gain_db_q8[n] = line->class_gain_db_q8[n];
     }
 }
 
 /* What a cell shows by itself; its level but for the horizon's rise and the edges. Indices are
  * signed: then a loop of this becomes vector gathers. */
-static void take_tops(const struct lm_k_lit_line *line, uint32_t end, struct work *restrict w,
-                      int32_t *restrict level_db_q8)
+static void take_tops(const struct lm_k_lit_line *line, uint32_t end, struct work *restrict w)
 {
     const struct lm_k_tops tops = line->tops;
-    const int32_t *gain_db_q8 = line->gain_db_q8;
+    const int16_t *gain_db_q8 = line->gain_db_q8;
     struct words words;
     set_words(line, &words);
     for (uint32_t i = 0; i < end; i++) {
         const uint32_t cell = tops.cell[i];
         const int32_t height_m_q14 = words.height_m_q14[(int32_t)(cell % LM_K_CODES)];
         w->tangent[LM_LANES + i] = lm_k_tangent(&tops, i, height_m_q14);
-        w->kind[LM_LANES + i] = words.kind[(int32_t)((cell >> 4) % LM_K_CODES)];
-        level_db_q8[i] = (int32_t)(cell >> 8 & 255) * LM_GAMMA_CODE_STEP_DB_Q8 +
-                         ((int32_t)cell >> 16) + gain_db_q8[i];
+        const int32_t class_index = (int32_t)((cell >> 4) % LM_K_CODES);
+        w->kind[LM_LANES + i] = words.kind[class_index];
+        w->shown_db_q8[i] = (int32_t)(cell >> 8 & 255) * LM_GAMMA_CODE_STEP_DB_Q8 +
+                            ((int32_t)cell >> 16) + LM_LEVEL_SHADOW +
+                            fx_sat_i16(gain_db_q8[i] + words.gain_db_q8[class_index]);
     }
 }
 
@@ -96,7 +99,7 @@ static void max_of_four(uint32_t end, struct work *w)
  * wait for the eight before them, and not a cell for the one before it. It rises by less than 2^31:
  * see `start`. Returns whether some cell is behind a shore. */
 static bool light(uint32_t end, struct work *restrict w, int32_t *restrict line_horizon,
-                  int32_t *restrict level_db_q8)
+                  int16_t *restrict level_db_q8)
 {
     int32_t left = 0;
     for (uint32_t i = 0; i < end; i++) {
@@ -106,9 +109,9 @@ static bool light(uint32_t end, struct work *restrict w, int32_t *restrict line_
         const int32_t horizon = fx_max_i32(of_eight, w->horizon[at - LM_LANES]);
         const int32_t next = fx_max_i32(horizon, w->tangent[at]);
         const int32_t edge_db_q8 = kind != kind_before ? kind >> LM_K_MARK_BITS : 0;
-        const int32_t lit_db_q8 = level_db_q8[i] + edge_db_q8 + fx_db_q8_vec_i32(next - horizon);
+        const int32_t lit_db_q8 = w->shown_db_q8[i] + edge_db_q8 + fx_db_q8_vec_i32(next - horizon);
         w->horizon[at] = line_horizon[i] = horizon;
-        level_db_q8[i] = next != horizon ? lit_db_q8 : LM_LEVEL_SHADOW;
+        level_db_q8[i] = next != horizon ? fx_sat_i16(lit_db_q8) : LM_LEVEL_SHADOW;
         left |= kind_before & ~kind;
     }
     return left & LM_K_WATER;
@@ -153,7 +156,7 @@ void lm_k_light(const struct lm_k_lit_line *line)
 {
     const uint32_t cells = line->tops.cells, end = (cells + LM_LANES - 1) / LM_LANES * LM_LANES;
     struct work *w = (struct work *)line->work;
-    take_tops(line, end, w, line->level_db_q8);
+    take_tops(line, end, w);
     set_ends(line, w);
     max_of_four(end, w);
     if (light(end, w, line->horizon, line->level_db_q8)) {

@@ -1,7 +1,7 @@
 #include "fx/sat.h"
 #include "lm/kernels_radar.h"
 
-void lm_k_tone(const struct lm_k_tone_curve *tone, const int32_t *level_db_q8,
+void lm_k_tone(const struct lm_k_tone_curve *tone, const int16_t *level_db_q8,
                uint8_t *restrict grey, uint32_t cells)
 {
     const int32_t black_db_q8 = tone->black_db_q8, white_db_q8 = tone->white_db_q8;

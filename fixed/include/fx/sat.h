@@ -53,6 +53,12 @@ static inline uint32_t fx_abs_u32(int32_t x)
     return x < 0 ? 0u - (uint32_t)x : (uint32_t)x;
 }
 
+/* Saturate to 16 bits: the number of INT16_MIN..INT16_MAX that is nearest to x. */
+static inline int16_t fx_sat_i16(int32_t x)
+{
+    return (int16_t)fx_clamp_i32(x, INT16_MIN, INT16_MAX);
+}
+
 /* Saturate to 32 bits: the number of INT32_MIN..INT32_MAX that is nearest to x. */
 static inline int32_t fx_sat_i32(int64_t x)
 {

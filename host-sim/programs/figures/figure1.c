@@ -76,7 +76,7 @@ static void look_finely(struct patch *p, const struct lm_target *t, double look_
     struct lm_target_patch points;
     lm_target_patch_set(&points, &near, &g);
     for (int k = 0; k < p->cells; k++) {
-        int32_t level_q8[CELLS_MAX];
+        int16_t level_q8[CELLS_MAX];
         for (int i = 0; i < p->cells; i++) {
             level_q8[i] = LM_LEVEL_SHADOW;
         }
@@ -95,7 +95,7 @@ static void look_coarsely(struct patch *p, const struct lm_target *t, double loo
     struct lm_target turned = *t;
     struct lm_geo_origin origin;
     struct lm_position place;
-    int32_t level_q8 = LM_LEVEL_SHADOW;
+    int16_t level_q8 = LM_LEVEL_SHADOW;
     const double beam_m = 64 * p->cell_m;
     lm_geo_set_origin(&origin, (struct lm_position){t->latitude, t->longitude});
     place = lm_geo_direct(&origin, FX_BAM_180, (uint32_t)(range_m * 256));

@@ -17,7 +17,7 @@ $(O)/faults.elf: $(call image_objs,faults)
 # behind it take.
 STAGES := lm_sector_draw_line lm_sar_draw_line lm_sector_sample_ahead lm_sar_sample_ahead lm_scan_conv_sector \
     lm_scan_conv_patch lm_line_trace lm_line_add_targets lm_scan_line_run lm_foreground_line_horizon lm_illuminate \
-    lm_antenna_pattern_apply lm_class_gain_run lm_grain_floor_run lm_patch_floor_run lm_receiver_run lm_grain_powers lm_layover_run \
+    lm_antenna_pattern_apply lm_grain_floor_run lm_patch_floor_run lm_receiver_run lm_grain_powers lm_layover_run \
     lm_defocus_run lm_beam_sum lm_tone_run lm_sar_prefetch lm_scan_line_prefetch lm_tile_cache_service lm_show_frame \
     lm_composer_run lm_overlay_symbols lm_overlay_labels lm_nav_take lm_nav_at lm_tile_unpack_run lm_lz4_run lm_tile_check \
     lm_track_step lm_beacon_sample lm_side_lobes_find lm_side_lobes_add lm_foreground_horizon \

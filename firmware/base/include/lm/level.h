@@ -3,7 +3,11 @@
 #ifndef LM_LEVEL_H
 #define LM_LEVEL_H
 
-/* Level of a cell in shadow, which has no echo: -128 dB. */
-enum { LM_LEVEL_SHADOW = -0x8000 };
+#include <stdint.h>
+
+/* Level of a cell in shadow, which has no echo: -128 dB. Lines of levels are held in 16 bits, of
+ * which this is the lowest number: what is darker counts as shadow, what is above 128 dB as that.
+ * (docs/EQUATIONS.md, "Level", has the highest and the lowest that a picture can ask for.) */
+enum { LM_LEVEL_SHADOW = INT16_MIN };
 
 #endif

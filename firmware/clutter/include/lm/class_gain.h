@@ -22,8 +22,7 @@ enum { LM_FACING_STEPS = 64 };
 
 /* Gain of each class. The caller owns it. */
 struct lm_class_gain {
-    int32_t of_class_db_q8[LM_DB_CLASSES];   /* -109..25 dB; the kernel takes 16 bits */
-    bool is_any;                             /* true if a class has a gain other than 0 */
+    int16_t of_class_db_q8[LM_DB_CLASSES];   /* -109..25 dB: what lm_illuminate adds */
     bool is_faced;                           /* true if a class has a facing */
     uint8_t facing[LM_DB_CLASSES];           /* of struct lm_class */
     int32_t unfaced_db_q8[LM_DB_CLASSES];    /* gain without that of the facing; -89..25 dB */
@@ -48,13 +47,5 @@ void lm_class_gain_set(struct lm_class_gain *g, const struct lm_facing_config *f
  * LM_CLASS_GAIN_MAX_DB_Q8. Cost: 150 instructions if a class
  * has one. */
 void lm_class_gain_look(struct lm_class_gain *g, fx_bam_t azimuth);
-
-/* Add to the level of each cell the gain of its class, in place. `cell` is that of struct
- * lm_scan_line. Works on whole pairs of blocks of LM_LANES cells: arrays have room for them, and
- * what is written behind the last cell means nothing. LM_LEVEL_SHADOW stays below -80 dB, also
- * after speckle. Pointers are borrowed for the call. Cost: 3 instructions a cell if a class has a
- * gain, none otherwise. */
-void lm_class_gain_run(const struct lm_class_gain *g, const uint32_t *cell, int32_t *level_db_q8,
-                       uint32_t cells);
 
 #endif

@@ -105,7 +105,7 @@ void lm_grain_row(struct lm_grain_place place, int8_t *grain_q5, uint32_t cells)
 /* Multiply the power of each cell by the speckle of the row from a place on, in place. Levels have
  * room for whole groups of 16 cells, of which `cells` are at most LM_CELLS_MAX. */
 void lm_grain_run(const struct lm_grain_curve *curve, struct lm_grain_place place,
-                  int32_t *level_db_q8, uint32_t cells);
+                  int16_t *level_db_q8, uint32_t cells);
 
 /* Add a floor to the power of each cell, and multiply the sum by the speckle:
  * 10 log10(10^(level/10) + 10^(floor/10)) plus that of the cell's number. Levels, floor and sum are
@@ -113,7 +113,7 @@ void lm_grain_run(const struct lm_grain_curve *curve, struct lm_grain_place plac
  * case. The worst error of the sum is 0.018 dB. The two arrays are apart, and have room for whole
  * groups of 16 cells. Cost: docs/benchmarks.md. */
 void lm_grain_floor_run(const struct lm_grain_curve *curve, struct lm_grain_place place,
-                        int32_t floor_db_q8, const int32_t *level_db_q8, int32_t *speckled_db_q8,
+                        int32_t floor_db_q8, const int16_t *level_db_q8, int16_t *speckled_db_q8,
                         uint32_t cells);
 
 #endif

@@ -17,7 +17,7 @@
  *     lm_range_grid_set(&grid, &radar->illumination, cell_m_q8 / 2, cell_m_q8, cells, height_m_q10,
  *                       reference_m_q10);                        once a sector or patch
  *     lm_class_lut_set(&lut, &radar->illumination, &db->classes);
- *     lm_illuminate(&grid, &lut, &line, LM_HORIZON_OPEN, &lit);  once a line
+ *     lm_illuminate(&grid, &lut, NULL, &line, LM_HORIZON_OPEN, &lit);  once a line
  *
  * No function fails. Pointers are borrowed for the call. */
 #ifndef LM_ILLUMINATION_H
@@ -25,6 +25,7 @@
 
 #include <stdint.h>
 
+#include "lm/class_gain.h"
 #include "lm/db.h"
 #include "lm/level.h"
 #include "lm/radar.h"
@@ -49,8 +50,8 @@ struct lm_range_grid {
     int32_t flat_rise;        /* rise of the tangent in cell `first` over flat ground */
     int32_t inverse_range[LM_CELLS_ROOM]; /* 1 / s in Q(17 + tangent_bits), s in metres; 0..2^31 */
     int32_t fall_m_q14[LM_CELLS_ROOM];    /* the antenna's height plus the Earth's drop */
-    int32_t
-        gain_db_q8[LM_CELLS_ROOM]; /* K_i, gamma of reflectivity code 0, scale of the tangents */
+    /* K_i, gamma of reflectivity code 0, scale of the tangents: -52..38 dB over LM_LEVEL_SHADOW. */
+    int16_t gain_db_q8[LM_CELLS_ROOM];
 };
 
 /* Prepare a grid whose cell i is centred at ground range first_m_q8 + i * cell_m_q8.
@@ -87,7 +88,7 @@ typedef int64_t lm_horizon_q40_t;
 #define LM_HORIZON_OPEN INT64_MIN
 
 /* Entries of the work space of lm_illuminate, which is too large for a stack. */
-enum { LM_LIT_SCRATCH = 4 * (LM_LANES + LM_CELLS_ROOM) + 32 };
+enum { LM_LIT_SCRATCH = 4 * (LM_LANES + LM_CELLS_ROOM) + 32 + LM_CELLS_ROOM };
 
 /* Illuminated line: the result of lm_illuminate. */
 struct lm_lit_line {
@@ -95,15 +96,17 @@ struct lm_lit_line {
      * start of the line, horizon[i + 1] that behind cell i. Cells before `first` leave it as it
      * is. */
     int32_t horizon[LM_CELLS_ROOM];
-    int32_t level_db_q8[LM_CELLS_ROOM]; /* LM_LEVEL_SHADOW in shadow and before `first` */
+    int16_t level_db_q8[LM_CELLS_ROOM]; /* LM_LEVEL_SHADOW in shadow and before `first` */
     int32_t scratch[LM_LIT_SCRATCH];    /* work space; means nothing afterwards */
 };
 
-/* Illuminate the cells of a line, from the horizon at its start. Returns the horizon behind the
- * last cell, or `horizon` if no cell of the grid is displayed. The memory of `lit` may hold
- * anything before. Cost: that of lm_k_light, about 9 instructions a cell with vectors. */
+/* Illuminate the cells of a line, from the horizon at its start, and add to what is lit the gain of
+ * its class (`class_gain`; NULL: none). Returns the horizon behind the last cell, or `horizon` if
+ * no cell of the grid is displayed. The memory of `lit` may hold anything before. Cost: that of
+ * lm_k_light, about 9 instructions a cell with vectors. */
 lm_horizon_q40_t lm_illuminate(const struct lm_range_grid *grid,
                                const struct lm_class_lut *class_lut,
+                               const struct lm_class_gain *class_gain,
                                const struct lm_scan_line *line, lm_horizon_q40_t horizon,
                                struct lm_lit_line *lit);
 

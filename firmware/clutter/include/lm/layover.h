@@ -46,7 +46,7 @@ void lm_layover_set(struct lm_layover *l, const struct lm_classes *classes,
  * what it holds in the last group of 16 cells, behind the last cell, is lost. Returns the line as
  * it is laid over, in `laid_db_q8`, which has LM_LAYOVER_ROOM entries. Pointers are borrowed for
  * the call. Cost: that of lm_k_layover. */
-int32_t *lm_layover_run(const struct lm_layover *l, const struct lm_scan_line *ground,
-                        int32_t *level_db_q8, int32_t *laid_db_q8);
+int16_t *lm_layover_run(const struct lm_layover *l, const struct lm_scan_line *ground,
+                        int16_t *level_db_q8, int16_t *laid_db_q8);
 
 #endif

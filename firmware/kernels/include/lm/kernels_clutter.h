@@ -54,21 +54,23 @@ int32_t lm_k_highest_tangent(const struct lm_k_tops *tops);
 /* A line to be lit, and where the results go. */
 struct lm_k_lit_line {
     struct lm_k_tops tops;
-    const int32_t *gain_db_q8;    /* level of reflectivity code 0 where the horizon rises by 1 */
-    const uint8_t *mark_of_class; /* LM_K_CODES entries */
-    uint8_t edge_structure_db_q3; /* leading edge of a structure, dB * 8 */
-    uint8_t edge_trees_db_q3;     /* and of trees */
-    int32_t shore_db_q8;          /* brightness of the first cell behind water */
-    int32_t shore_fall_db_q8;     /* by how much each further one is darker; 0 or more */
-    int32_t start;                /* horizon before cell `first`; within 2^31 of any tangent */
-    int32_t *horizon;             /* result */
-    int32_t *level_db_q8;         /* result */
-    int32_t *work;                /* scratch of LM_K_LIGHT_WORK entries; too large for a stack */
+    /* Level of reflectivity code 0 where the horizon rises by 1, over LM_LEVEL_SHADOW. */
+    const int16_t *gain_db_q8;
+    const int16_t *class_gain_db_q8; /* LM_K_CODES entries */
+    const uint8_t *mark_of_class;    /* LM_K_CODES entries */
+    uint8_t edge_structure_db_q3;    /* leading edge of a structure, dB * 8 */
+    uint8_t edge_trees_db_q3;        /* and of trees */
+    int32_t shore_db_q8;             /* brightness of the first cell behind water */
+    int32_t shore_fall_db_q8;        /* by how much each further one is darker; 0 or more */
+    int32_t start;                   /* horizon before cell `first`; within 2^31 of any tangent */
+    int32_t *horizon;                /* result */
+    int16_t *level_db_q8;            /* result */
+    int32_t *work;                   /* scratch of LM_K_LIGHT_WORK entries; too large for a stack */
 };
 
 enum {
     LM_K_SHORE_STRETCH = 32, /* cells that are searched for shores at once */
-    LM_K_LIGHT_WORK = 4 * (LM_LANES + LM_CELLS_ROOM) + LM_K_SHORE_STRETCH
+    LM_K_LIGHT_WORK = 4 * (LM_LANES + LM_CELLS_ROOM) + LM_K_SHORE_STRETCH + LM_CELLS_ROOM
 };
 
 /* Work out horizon and level of every cell of a line.
@@ -82,8 +84,9 @@ enum {
  *
  * - horizon[0..first] is `start`; horizon[i + 1] is what cell i leaves, for i < cells.
  * - A cell that does not raise the horizon, or lies before `first`, has LM_LEVEL_SHADOW.
- * - The level of a lit cell is its reflectivity, gain_db_q8 and 10 log10 of the horizon's rise,
- *   and the edge of its class where the cell before it has another mark. It takes 17 bits.
+ * - The level of a lit cell is its reflectivity, the gains of its place and its class, 10 log10 of
+ *   the horizon's rise, and the edge of its class where the cell before it has another mark. It is
+ *   held within 16 bits, and so are the two gains together.
  * - From the first cell behind water on, lit cells are brighter by what is left of the shore, to
  *   the next water or where nothing is left.
  *
@@ -91,15 +94,11 @@ enum {
  * is written from entry 0 on. `first` may be `cells`. Cost: 9 a cell. */
 void lm_k_light(const struct lm_k_lit_line *line);
 
-/* Add to each level the gain of its cell's class, of which each takes 16 bits. `cell` as in a tile
- * record; `gain_db_q8` has LM_K_CODES entries. Cost: 3 a cell. */
-void lm_k_class_gain(const int32_t *gain_db_q8, const uint32_t *cell, int32_t *level_db_q8,
-                     uint32_t cells);
-
 /* Add to the levels of water, whose classes are the bits of `water`, even_db_q8 and the cell's own
- * gain. `cell` as in a tile record; gains within 2^30 of 0. Cost: 4 a cell. */
+ * gain; both together and the level are held within 16 bits. `cell` as in a tile record; gains
+ * within 2^30 of 0. Cost: 3 a cell. */
 void lm_k_water_gain(uint32_t water, int32_t even_db_q8, const int32_t *cell_db_q8,
-                     const uint32_t *cell, int32_t *level_db_q8, uint32_t cells);
+                     const uint32_t *cell, int16_t *level_db_q8, uint32_t cells);
 
 /* Speckle from the grain: numbers of a field (lm/grain.h), and the curve that makes decibels of
  * them. */
@@ -110,15 +109,15 @@ struct lm_k_curve {
 
 enum { LM_K_CURVE_LINES = 16 };
 
-/* Add to each level the speckle of its number. Cost: 2 a cell. */
-void lm_k_grain_add(const struct lm_k_curve *curve, const int8_t *grain_q5, int32_t *level_db_q8,
+/* Add to each level the speckle of its number; the sum is held within 16 bits. Cost: 2 a cell. */
+void lm_k_grain_add(const struct lm_k_curve *curve, const int8_t *grain_q5, int16_t *level_db_q8,
                     uint32_t cells);
 
 /* Power of each level and the floor together, as a level, and the speckle of its number added to
  * it. Levels, floor and their sum are held within 16 bits, or 128 dB of 0: what is more than 32 dB
  * below a floor changes nothing. The sum's worst error is 0.018 dB. Cost: 3 a cell. */
 void lm_k_grain_floor(const struct lm_k_curve *curve, const int8_t *grain_q5, int32_t floor_db_q8,
-                      const int32_t *level_db_q8, int32_t *noisy_db_q8, uint32_t cells);
+                      const int16_t *level_db_q8, int16_t *noisy_db_q8, uint32_t cells);
 
 enum { LM_K_GRAIN_WAY = 64, LM_K_GRAIN_BEHIND = 32 };
 
@@ -155,7 +154,7 @@ enum {
 struct lm_k_layover {
     const uint32_t *cell;           /* as in lm_k_tops: the height code counts */
     const int32_t *elevation_m_q14; /* magnitude below 2^29 */
-    const int32_t *level_db_q8;     /* within 2^29 of 0; LM_LEVEL_SHADOW behind the last cell */
+    const int16_t *level_db_q8;     /* LM_LEVEL_SHADOW behind the last cell */
     uint32_t cells;                 /* 1..LM_CELLS_MAX */
     int32_t reference_m_q14;        /* what lies as high is not displaced; magnitude below 2^29 */
     int32_t sixteenths_q31;         /* of a cell for 2^-14 m of elevation; 0..2^31 - 1 */
@@ -176,7 +175,7 @@ struct lm_k_layover {
  *
  * Cost: 7 a cell where nothing moves, 11 over hills and in towns. A group is a pass for each two
  * cells that its places are apart. */
-void lm_k_layover(const struct lm_k_layover *line, int32_t *laid_db_q8);
+void lm_k_layover(const struct lm_k_layover *line, int16_t *laid_db_q8);
 
 /* Noise: draws of random numbers in decibels, as lm/noise.h makes them. Draws come in
  * blocks of LM_LANES cells: those of block b are row_db_q8[entry[b]] and the LM_LANES - 1 behind

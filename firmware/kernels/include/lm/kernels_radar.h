@@ -10,44 +10,52 @@
 
 /* Each bin takes the level of one cell: bin_db_q8[i] = level_db_q8[cell_of[i]]. `cell_of` may hold
  * any index of `level_db_q8`. Reads and writes no bin behind the last one. Cost: 2 a cell. */
-void lm_k_gather(const int32_t *level_db_q8, const int32_t *cell_of, int32_t *bin_db_q8,
+void lm_k_gather(const int16_t *level_db_q8, const int32_t *cell_of, int16_t *bin_db_q8,
                  uint32_t cells);
 
-/* Replace each level by its power, in place: `line` holds level_db_q8 (signed; magnitude below
- * 2^17), and then 10^(level / 10) in Q24. 1 is the least power, -72.25 dB; powers of 24.08 dB and
- * more are those of the octave below 2^32. Writes no entry behind the last cell. Cost: 3 a cell. */
-void lm_k_powers_of_levels(uint32_t *line, uint32_t cells);
+/* Power of each level, 10^(level / 10) in Q24. 1 is the least power, -72.25 dB; powers of 24.08 dB
+ * and more are those of the octave below 2^32. Writes no entry behind the last cell. Cost: 3 a
+ * cell. */
+void lm_k_powers_of_levels(const int16_t *level_db_q8, uint32_t *power_q24, uint32_t cells);
 
-/* Sum of powers, as levels: add `level_db_q8` to `sum_db_q8`. Levels within 2^30 of 0; worst error
- * 0.018 dB. Writes no entry behind the last cell. Cost: 3 a cell. */
-void lm_k_levels_add(int32_t *sum_db_q8, const int32_t *level_db_q8, uint32_t cells);
+enum { LM_K_STRIDE = 4 };
 
-/* Mean of powers, as levels: the sum of `sum_db_q8` and `level_db_q8`, less `less_db_q8`, and not
- * below `least_db_q8`. The result stands in `level_db_q8`. Writes no entry behind the last cell.
- * Cost: 3 a cell. */
-void lm_k_levels_mean(const int32_t *sum_db_q8, int32_t less_db_q8, int32_t least_db_q8,
-                      int32_t *level_db_q8, uint32_t cells);
+/* Sum of the powers of level_db_q8[0], [LM_K_STRIDE], ..., `count` of them, over that of
+ * `most_db_q8`, which counts for what is higher, in Q24. No level between the first and the last
+ * group of LM_K_STRIDE is outside the array, and there are at most 255. Cost: 3 a level that
+ * counts.
+ */
+uint32_t lm_k_sum_powers(const int16_t *level_db_q8, int16_t most_db_q8, uint32_t count);
+
+/* Sum of powers, as levels held within 16 bits: add `level_db_q8` to `sum_db_q8`. Worst error 0.018
+ * dB. Writes no entry behind the last cell. Cost: 2 a cell. */
+void lm_k_levels_add(int16_t *sum_db_q8, const int16_t *level_db_q8, uint32_t cells);
+
+/* Mean of powers, as levels: the sum of `sum_db_q8` and `level_db_q8` as above, less `less_db_q8`.
+ * The result stands in `level_db_q8`. Writes no entry behind the last cell. Cost: 2 a cell. */
+void lm_k_levels_mean(const int16_t *sum_db_q8, int16_t less_db_q8, int16_t *level_db_q8,
+                      uint32_t cells);
 
 enum { LM_K_HIGHEST_CELLS = 16 };
 
 /* The highest of each LM_K_HIGHEST_CELLS levels. Behind the last cell there may be anything: it
  * counts too. Cost: 1 a cell. */
-void lm_k_highest(const int32_t *level_db_q8, int32_t *highest_db_q8, uint32_t cells);
+void lm_k_highest(const int16_t *level_db_q8, int16_t *highest_db_q8, uint32_t cells);
 
 enum { LM_K_BESIDE = 4 };
 
-/* Those of LM_K_HIGHEST_CELLS cells that are at least `least_db_q8` high, and `above_db_q8` or more
- * above the cells LM_K_BESIDE before and behind them: bit k is cell k. As many cells before the
- * first and behind the last are read, too. All numbers count as the nearest that 16 bits hold, and
- * so do differences. Cost: 2 a cell. */
-uint32_t lm_k_stand_out(const int32_t *level_db_q8, int32_t least_db_q8, int32_t above_db_q8);
+/* Those of LM_K_HIGHEST_CELLS cells that are at least `least_db_q8` high, as high as each of the
+ * LM_K_BESIDE cells before and behind them, and `above_db_q8` or more above the last of these: bit
+ * k is cell k. As many cells before the first and behind the last are read, too. The difference is
+ * held within 16 bits. Cost: 4 a cell. */
+uint32_t lm_k_stand_out(const int16_t *level_db_q8, int16_t least_db_q8, int16_t above_db_q8);
 
 enum { LM_K_LOBES = 16, LM_K_LOBES_BELOW_DB_Q8 = 25 * 256 };
 
 /* Add to LM_K_LOBES levels those of a point's side lobes, side_db_q8 over the point's own. What is
- * LM_K_LOBES_BELOW_DB_Q8 below a level, or more, is not added. Levels within 2^30 of 0. Cost: 5 a
- * cell. */
-void lm_k_side_lobes(const int16_t *side_db_q8, int32_t point_db_q8, int32_t *level_db_q8);
+ * LM_K_LOBES_BELOW_DB_Q8 below a level, or more, is not added. Sums and differences are held within
+ * 16 bits. Cost: 3 a cell. */
+void lm_k_side_lobes(const int16_t *side_db_q8, int16_t point_db_q8, int16_t *level_db_q8);
 
 enum { LM_K_TAPS = 8 };
 
@@ -90,16 +98,16 @@ enum { LM_K_DETECT_BIAS_DB_Q8 = 48 * 256 };
 
 /* Level of each bin: signal and noise added as powers, then less fall_db_q8. The noise is its mean
  * and a draw; 1.0 in Q24 of power is 0 dB; no power counts as -176 dB. Signals, noises and
- * their sums are held between -176 and 80 dB. What is given is within 2^30 of 0. Groups have
- * LM_LANES cells. Cost: 8 a cell. */
-void lm_k_detect(const struct lm_k_receiver *r, const uint32_t *power_q24, int32_t *level_db_q8,
+ * their sums are held between -176 and 80 dB, levels and falls within 16 bits. What is given is
+ * within 2^30 of 0. Groups have LM_LANES cells. Cost: 7 a cell. */
+void lm_k_detect(const struct lm_k_receiver *r, const uint32_t *power_q24, int16_t *level_db_q8,
                  uint32_t cells);
 
 /* Level of each bin in rain. The signal is weaker by the loss. Noise and rain add before the draw,
- * because drops move and fluctuate as the noise does. Nothing is held: levels are within 2^30 of 0,
- * and no power counts as -240 dB. All else as lm_k_detect. Cost: 12 a cell. */
+ * because drops move and fluctuate as the noise does. Nothing but the result is held, and no power
+ * counts as -240 dB. All else as lm_k_detect. Cost: 12 a cell. */
 void lm_k_detect_in_rain(const struct lm_k_receiver *r, const struct lm_k_rain *rain,
-                         const uint32_t *power_q24, int32_t *level_db_q8, uint32_t cells);
+                         const uint32_t *power_q24, int16_t *level_db_q8, uint32_t cells);
 
 enum { LM_K_TONE_PIECES = 64, LM_K_TONE_PIECE_STEPS_LOG2 = 5 };
 
@@ -115,9 +123,9 @@ struct lm_k_tone_curve {
     const uint8_t (*pieces)[LM_K_TONE_PIECES];
 };
 
-/* Grey of each level; any level is allowed. Writes no entry behind the last cell. Cost: 2 a cell,
+/* Grey of each level. Writes no entry behind the last cell. Cost: 2 a cell,
  * without lines 6. */
-void lm_k_tone(const struct lm_k_tone_curve *tone, const int32_t *level_db_q8, uint8_t *grey,
+void lm_k_tone(const struct lm_k_tone_curve *tone, const int16_t *level_db_q8, uint8_t *grey,
                uint32_t cells);
 
 #endif

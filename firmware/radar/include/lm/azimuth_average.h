@@ -17,7 +17,7 @@ enum { LM_AZIMUTH_AVERAGE_LOG2_MAX = 3 }; /* eight azimuths */
 
 /* Sum of the powers of the azimuths so far, as levels. The caller owns it. */
 struct lm_azimuth_average {
-    int32_t sum_db_q8[LM_CELLS_ROOM];
+    int16_t sum_db_q8[LM_CELLS_ROOM];
 };
 
 /* Offset of an azimuth from the middle of its sample, signed BAM, right positive. The azimuths are
@@ -30,12 +30,12 @@ struct lm_azimuth_average {
 int32_t lm_azimuth_average_offset(fx_bam_t spacing, uint32_t azimuths_log2, uint32_t turn);
 
 /* Begin with the levels of the first azimuth. */
-void lm_azimuth_average_begin(struct lm_azimuth_average *f, const int32_t *level_db_q8,
+void lm_azimuth_average_begin(struct lm_azimuth_average *f, const int16_t *level_db_q8,
                               uint32_t cells);
 
 /* Add the levels of another azimuth. Each addition is good to 0.018 dB. Cost: docs/benchmarks.md.
  */
-void lm_azimuth_average_add(struct lm_azimuth_average *f, const int32_t *level_db_q8,
+void lm_azimuth_average_add(struct lm_azimuth_average *f, const int16_t *level_db_q8,
                             uint32_t cells);
 
 /* Replace `level_db_q8`, the levels of the last azimuth, by the mean power of all 2^azimuths_log2.
@@ -43,6 +43,6 @@ void lm_azimuth_average_add(struct lm_azimuth_average *f, const int32_t *level_d
  * 1..LM_AZIMUTH_AVERAGE_LOG2_MAX. Cells in shadow in every azimuth stay within 1/256 dB of
  * LM_LEVEL_SHADOW. */
 void lm_azimuth_average_mean(const struct lm_azimuth_average *f, uint32_t azimuths_log2,
-                             int32_t *level_db_q8, uint32_t cells);
+                             int16_t *level_db_q8, uint32_t cells);
 
 #endif

@@ -36,6 +36,6 @@ void lm_beacon_sample(const struct lm_beacon_sample *b, struct lm_line *line, ui
 /* Levels of a display line from the powers behind the beam: `bright_db_q8` where a beacon within
  * the beam answers, LM_LEVEL_SHADOW elsewhere. */
 void lm_beacon_show(const uint32_t *power_q24, uint32_t cells, int32_t bright_db_q8,
-                    int32_t *level_db_q8);
+                    int16_t *level_db_q8);
 
 #endif

@@ -21,8 +21,8 @@ void lm_defocus_shares(uint32_t width_lines_q8, uint32_t share_q16[2 * LM_DEFOCU
 /* Compute a line as the mean of the powers of its neighbours by their shares. Levels above 90 dB
  * saturate. `level_db_q8` (result) and `power_q32` (work space) have `cells` entries. Cost: about
  * 15 instructions a cell for each line with a share. */
-void lm_defocus_run(const int32_t *const line_db_q8[2 * LM_DEFOCUS_REACH + 1],
-                    const uint32_t share_q16[2 * LM_DEFOCUS_REACH + 1], int32_t *level_db_q8,
+void lm_defocus_run(const int16_t *const line_db_q8[2 * LM_DEFOCUS_REACH + 1],
+                    const uint32_t share_q16[2 * LM_DEFOCUS_REACH + 1], int16_t *level_db_q8,
                     uint64_t *power_q32, uint32_t cells);
 
 #endif

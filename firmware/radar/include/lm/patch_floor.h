@@ -29,6 +29,6 @@ void lm_patch_floor_clear(struct lm_patch_floor *f);
  * the line receives, before speckle, within 2^17 of 0. Pointers are borrowed for the call. Cost: 1
  * instruction a cell. */
 int32_t lm_patch_floor_run(struct lm_patch_floor *f, const struct lm_sar_table *sar,
-                           uint32_t number, const int32_t *level_db_q8, uint32_t cells);
+                           uint32_t number, const int16_t *level_db_q8, uint32_t cells);
 
 #endif

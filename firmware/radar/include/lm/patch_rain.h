@@ -59,7 +59,7 @@ void lm_patch_rain_set(struct lm_patch_rain *p, const struct lm_radar *radar,
  * Cost: 12 instructions a cell, and 13 for each circle that the line meets. At each new station,
  * 800 a cell for each circle; a patch of 5 m cells 40 km away is nine stations wide. */
 void lm_patch_rain_run(struct lm_patch_rain *p, const struct lm_patch_geometry *geometry,
-                       uint32_t line, const int32_t *clutter_db_q8, int32_t *level_db_q8);
+                       uint32_t line, const int16_t *clutter_db_q8, int16_t *level_db_q8);
 
 /* Attenuate the scatterers by the rain before them. Chips are attenuated by lm_patch_rain_run,
  * because they are in the lines' levels. */

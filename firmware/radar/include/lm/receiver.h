@@ -75,6 +75,6 @@ void lm_receiver_join(const struct lm_receiver *r, const uint32_t *steady_q24, u
  * own step of 2^-24. Cost: 7 instructions a bin on a machine with vectors of eight; rain takes 2
  * more. */
 void lm_receiver_run(const struct lm_receiver *r, const struct lm_weather *weather, uint32_t line,
-                     uint32_t sweep, const uint32_t *power_q24, int32_t *level_db_q8);
+                     uint32_t sweep, const uint32_t *power_q24, int16_t *level_db_q8);
 
 #endif

@@ -152,9 +152,9 @@ struct lm_sar {
     enum lm_sar_detail detail_state;
     struct lm_detail_reader detail_reader;
     struct lm_detail_patch detail; /* drawn once detail_state is LM_SAR_DETAIL_READY */
-    int32_t ring_db_q8[LM_SAR_RING][LM_CELLS_ROOM]; /* levels of line n at n % LM_SAR_RING */
+    int16_t ring_db_q8[LM_SAR_RING][LM_CELLS_ROOM]; /* levels of line n at n % LM_SAR_RING */
     uint64_t power_q32[LM_CELLS_ROOM];              /* work space */
-    int32_t laid_db_q8[LM_LAYOVER_ROOM];            /* work space */
+    int16_t laid_db_q8[LM_LAYOVER_ROOM];            /* work space */
 };
 
 /* Judge whether a patch can be made. Returns LM_REFUSED_NOT, or the first of these that holds:
@@ -222,7 +222,7 @@ bool lm_sar_sample_ahead(struct lm_sar *s, struct lm_tile_cache *tiles, uint32_t
  * - Samples that lm_sar_sample_ahead has not taken are taken here.
  *
  * Cost without them: about 640 instructions for 256 cells without defocus. */
-const int32_t *lm_sar_draw_line(struct lm_sar *s, struct lm_tile_cache *tiles,
+const int16_t *lm_sar_draw_line(struct lm_sar *s, struct lm_tile_cache *tiles,
                                 const struct lm_tone *tone, struct lm_line *line);
 
 /* Sample line `number`: the stages from the map to noise and speckle, without scatterers and
@@ -231,7 +231,7 @@ const int32_t *lm_sar_draw_line(struct lm_sar *s, struct lm_tile_cache *tiles,
  * - level_db_q8, from index LM_SAR_GUARD on: the levels;
  * - s->horizon: the horizon that the line started with. */
 void lm_sar_sample_line(struct lm_sar *s, struct lm_tile_cache *tiles, uint32_t number,
-                        struct lm_line *line, int32_t *level_db_q8);
+                        struct lm_line *line, int16_t *level_db_q8);
 
 /* Restart the patch from its first line. Samples and targets are taken again. */
 void lm_sar_restart(struct lm_sar *s);

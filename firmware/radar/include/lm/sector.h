@@ -132,7 +132,7 @@ struct lm_sector {
     uint32_t samples; /* number of the next one: those taken since the start, or if is_shared by
                          sweep and azimuth; changes with each */
     uint32_t power_q24[LM_CELLS_ROOM];  /* line drawn last, behind beam, pulse and speckle */
-    int32_t level_db_q8[LM_CELLS_ROOM]; /* line drawn last, behind the receiver */
+    int16_t level_db_q8[LM_CELLS_ROOM]; /* line drawn last, behind the receiver */
 };
 
 /* Begin the sweep under way again, because the map has changed: nothing of it is kept. */

@@ -33,8 +33,8 @@ _Static_assert(LM_SIDE_LOBES_LINES >= 3 * LM_RESPONSE_REACH, "those before and t
 /* Strong cell: its level with speckle, and where in the cell its point lies, 0..7: odd sixteenths,
  * from 7/16 before the middle to 7/16 behind it. */
 struct lm_strong_cell {
-    int32_t cell, level_db_q8;
-    uint32_t right, beyond;
+    int16_t cell, level_db_q8;
+    uint8_t right, beyond;
 };
 
 /* Strong cells of the lines around the one that is drawn. The caller owns it; all fields are
@@ -62,13 +62,13 @@ void lm_side_lobes_clear(struct lm_side_lobes *s, const struct lm_side_lobe_conf
  * of `shadow_db_q8`, and over the cells at both ends of these as the table asks. `seed` chooses
  * where in its cell a point lies. Cost: 1 instruction a cell, 120 for each group of 16 that may
  * hold one of the strongest, and 50 for each cell in it that stands out; of a town, 4 a cell. */
-void lm_side_lobes_find(struct lm_side_lobes *s, uint32_t line, const int32_t *level_db_q8,
+void lm_side_lobes_find(struct lm_side_lobes *s, uint32_t line, const int16_t *level_db_q8,
                         uint32_t cells, int32_t shadow_db_q8, uint32_t seed);
 
 /* Add to the levels of line `line` the side lobes of its own strong cells and of those on lines up
  * to LM_RESPONSE_REACH before and behind it. Cost: 23 instructions for each cell across, of which
  * there are 28 at most, and 110 for the cells along of each strong one. */
-void lm_side_lobes_add(const struct lm_side_lobes *s, uint32_t line, int32_t *level_db_q8,
+void lm_side_lobes_add(const struct lm_side_lobes *s, uint32_t line, int16_t *level_db_q8,
                        uint32_t cells);
 
 #endif

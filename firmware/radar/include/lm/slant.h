@@ -48,7 +48,7 @@ void lm_slant_set(struct lm_slant *s, uint32_t first_m_q8, uint32_t cell_m_q8, u
 /* Compute the power of each bin from the levels of the grid's cells; 1.0 in Q24 is 0 dB of gamma. A
  * bin takes the stronger of its two cells; a bin without ground has none. `grid` is that of
  * lm_slant_set. `level_db_q8` has grid->cells + 1 entries; the last one is written. */
-void lm_slant_run(const struct lm_slant *s, const struct lm_range_grid *grid, int32_t *level_db_q8,
+void lm_slant_run(const struct lm_slant *s, const struct lm_range_grid *grid, int16_t *level_db_q8,
                   uint32_t *power_q24);
 
 #endif

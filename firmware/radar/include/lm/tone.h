@@ -43,7 +43,7 @@ int lm_tone_set(struct lm_tone *t, const struct lm_tone_config *config);
  * darker for a higher level. v is the level's place between black and white, 0..1. With gamma 1 or
  * more the grey is within 1 of round(255 v^gamma); below gamma 1, within 1/2 of the curve at the
  * nearest step. Cost: docs/benchmarks.md. */
-void lm_tone_run(const struct lm_tone *t, const int32_t *level_db_q8, uint8_t *grey,
+void lm_tone_run(const struct lm_tone *t, const int16_t *level_db_q8, uint8_t *grey,
                  uint32_t cells);
 
 #endif

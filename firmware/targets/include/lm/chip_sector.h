@@ -29,6 +29,6 @@ struct lm_chip_sector_origin {
 uint32_t lm_chip_sector_add(const struct lm_target_candidate *candidate,
                             const struct lm_chip_sector_origin *origin,
                             const struct lm_target_line *line, int32_t clutter_db_q8,
-                            int32_t *level_db_q8);
+                            int16_t *level_db_q8);
 
 #endif

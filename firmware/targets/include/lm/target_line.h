@@ -25,7 +25,7 @@ struct lm_target_line {
     uint32_t stretch_cells; /* cells before and behind its own that a target also fills, so that it
                                is seen; then it is a point even if it has a chip */
     uint32_t scan, pulse;   /* number of the sweep and of the line: they choose random draws */
-    int32_t *clutter_db_q8; /* borrowed for the call: levels of the ground, which chips darken and
+    int16_t *clutter_db_q8; /* borrowed for the call: levels of the ground, which chips darken and
                                add to; NULL: those of the scatterers */
 };
 
@@ -50,7 +50,7 @@ struct lm_target_horizon {
  * 2000 more each and 1100 for each of their scatterers. */
 uint32_t lm_target_line_add(const struct lm_target_candidates *candidates,
                             const struct lm_target_line *line,
-                            const struct lm_target_horizon *horizon, int32_t *level_db_q8);
+                            const struct lm_target_horizon *horizon, int16_t *level_db_q8);
 
 /* Beacon that a line's interrogation meets, and that sees the antenna. */
 struct lm_target_reply {

@@ -127,19 +127,19 @@ void lm_target_patch_mark_hidden(struct lm_target_patch *p, uint32_t line, const
  * and 25 for each cell that it reaches, at most 17. A mover costs up to LM_SMEAR_SLICES times as
  * much, and more cells as its response is stretched. */
 void lm_target_patch_add_scatterers(struct lm_target_patch *p, uint32_t line, int32_t least_db_q8,
-                                    const struct lm_patch_geometry *g, int32_t *level_db_q8);
+                                    const struct lm_patch_geometry *g, int16_t *level_db_q8);
 
 /* Darken the ground of line `line` in the shadows of chips. Call it after layover, and before
  * speckle and noise. A hidden target has no shadow. Cost: 200 instructions for each cell under a
  * chip. */
 void lm_target_patch_shade(const struct lm_target_patch *p, uint32_t line,
-                           const struct lm_patch_geometry *g, int32_t *level_db_q8);
+                           const struct lm_patch_geometry *g, int16_t *level_db_q8);
 
 /* Add the chips to the levels of line `line`, each slice of a mover's smear separately. Call it
  * after lm_target_patch_shade, and before speckle and noise: each pixel of a chip is the mean of
  * many scatterers, as clutter is. Returns how many cells were left out because the line had
  * LM_CHIP_CELLS_A_LINE. Cost: 250 instructions for each cell under a slice. */
 uint32_t lm_target_patch_add_chips(const struct lm_target_patch *p, uint32_t line,
-                                   const struct lm_patch_geometry *g, int32_t *level_db_q8);
+                                   const struct lm_patch_geometry *g, int16_t *level_db_q8);
 
 #endif

@@ -58,7 +58,7 @@ TEST(it_is_the_highest_look_over_the_cells_that_are_shown)
         const lm_horizon_q40_t horizon = lm_foreground_line_horizon(&c.grid, &c.class_lut, &c.line);
         assert_true(fabs(ldexp((double)horizon, -40) - highest_tangent(&c, first_m)) < 1e-6);
         assert_true(horizon ==
-                    lm_illuminate(&c.grid, &c.class_lut, &c.line, LM_HORIZON_OPEN, &c.lit));
+                    lm_illuminate(&c.grid, &c.class_lut, NULL, &c.line, LM_HORIZON_OPEN, &c.lit));
     }
 }
 

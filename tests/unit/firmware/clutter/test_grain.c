@@ -19,7 +19,7 @@ static void fill_powers(double power[SIDE][SIDE], double looks, uint32_t epoch)
     struct lm_grain_place place = lm_grain_start(LM_GRAIN_SPECKLE, epoch);
     lm_grain_curve_set(&curve, (uint32_t)lround(looks * 256));
     for (int row = 0; row < SIDE; row++, place.row++) {
-        int32_t level_q8[SIDE] = {0};
+        int16_t level_q8[SIDE] = {0};
         lm_grain_run(&curve, place, level_q8, SIDE);
         for (int i = 0; i < SIDE; i++) {
             power[row][i] = pow(10, level_q8[i] / 2560.0);
@@ -177,10 +177,10 @@ TEST(every_cell_gains_the_speckle_of_its_place)
     for (uint32_t row = 0; row < 300; row++) {
         const struct lm_grain_place place = {row * 77, row * 1001};
         struct lm_grain_curve curve;
-        int32_t level[48], over_nothing[48], none[48];
+        int16_t level[48], over_nothing[48], none[48];
         lm_grain_curve_set(&curve, 256 + row * 50);
         for (int i = 0; i < 48; i++) {
-            level[i] = none[i] = 1000 * i - 80 * 256;
+            level[i] = none[i] = (int16_t)(1000 * i - 80 * 256);
         }
         lm_grain_run(&curve, place, level, 48);
         lm_grain_floor_run(&curve, place, -1000 * 256, none, over_nothing, 48);
@@ -216,7 +216,7 @@ static int32_t over_floor_q8(int32_t floor_q8, int32_t level_q8)
     enum { ROOM = 16 };
     const struct lm_grain_place place = {700, 2};
     struct lm_grain_curve curve;
-    int32_t level[ROOM] = {level_q8}, speckled_q8[ROOM];
+    int16_t level[ROOM] = {(int16_t)level_q8}, speckled_q8[ROOM];
     lm_grain_curve_set(&curve, 1024);
     lm_grain_floor_run(&curve, place, floor_q8, level, speckled_q8, 1);
     return speckled_q8[0] - lm_grain_db_q8(&curve, lm_grain_at(place));

@@ -56,7 +56,7 @@ static lm_horizon_q40_t run(struct scene *s, lm_horizon_q40_t horizon)
 {
     struct lm_class_lut class_lut;
     lm_class_lut_set(&class_lut, &s->config, tiny_classes());
-    return lm_illuminate(&s->grid, &class_lut, &s->line, horizon, &s->lit);
+    return lm_illuminate(&s->grid, &class_lut, NULL, &s->line, horizon, &s->lit);
 }
 
 static double tangent(double antenna_m, double top_m, double s_m)

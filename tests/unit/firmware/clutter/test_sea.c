@@ -40,7 +40,7 @@ static void set_world(struct world *w, int state, double wind_deg, double height
 }
 
 /* What a line of one class gains along a look. */
-static void run(struct world *w, uint32_t class_index, double look_deg, int32_t *level_q8)
+static void run(struct world *w, uint32_t class_index, double look_deg, int16_t *level_q8)
 {
     uint32_t cell[LM_CELLS_ROOM];
     for (uint32_t i = 0; i < LM_CELLS_ROOM; i++) {
@@ -54,7 +54,7 @@ static void run(struct world *w, uint32_t class_index, double look_deg, int32_t 
 /* Worst difference from the reference over the line's cells. */
 static double worst_db(struct world *w, double look_deg)
 {
-    int32_t level_q8[LM_CELLS_ROOM];
+    int16_t level_q8[LM_CELLS_ROOM];
     struct ref_bin bins[CELLS] = {{0}};
     const struct ref_view view = {w->grid.height_m_q10 / 1024.0, 0, w->grid.cell_m_q8 / 256.0};
     double worst = 0;
@@ -96,7 +96,7 @@ TEST(water_gains_what_the_reference_says_in_every_state_and_at_every_look)
 TEST(land_gains_nothing)
 {
     struct world *w = calloc(1, sizeof *w);
-    int32_t level_q8[LM_CELLS_ROOM];
+    int16_t level_q8[LM_CELLS_ROOM];
     w->radar = lm_radar_default;
     set_world(w, 1, 30, 500, 0, 150);
     for (uint32_t i = 0; i < LM_DB_CLASSES; i++) {
@@ -115,7 +115,7 @@ TEST(land_gains_nothing)
 TEST(the_sea_is_brightest_against_the_wind_and_darkest_across_it)
 {
     struct world *w = calloc(1, sizeof *w);
-    int32_t level_q8[LM_CELLS_ROOM];
+    int16_t level_q8[LM_CELLS_ROOM];
     double sum = 0;
     w->radar = lm_radar_default;
     set_world(w, 5, 40, 3000, 0, 70);
@@ -159,7 +159,7 @@ TEST(hostile_states_and_classes_stay_in_their_bounds)
 {
     struct world *w = calloc(1, sizeof *w);
     struct lm_classes classes;
-    int32_t level_q8[LM_CELLS_ROOM];
+    int16_t level_q8[LM_CELLS_ROOM];
     memset(&classes, 0xff, sizeof classes);
     w->radar = lm_radar_default;
     for (int sea = 0; sea < 256; sea += 5) {

@@ -19,7 +19,7 @@ struct world {
     struct ref_db ref;
     struct lm_tone tone;
     struct lm_line line;
-    int32_t level_q8[LM_CELLS_ROOM]; /* of its cells, with noise and speckle */
+    int16_t level_q8[LM_CELLS_ROOM]; /* of its cells, with noise and speckle */
     struct lm_radar radar;
     struct ref_params params;
     double table_db[REF_GRAIN_VALUES];

@@ -45,16 +45,16 @@ TEST(lines_are_meant_in_power_down_to_what_is_black)
 {
     struct hs_rng rng;
     hs_rng_seed(&rng, 21);
-    static int32_t levels[LINES][CELLS], level[CELLS];
+    static int16_t levels[LINES][CELLS], level[CELLS];
     static uint64_t scratch[CELLS];
     static double powers[LINES][CELLS], mean[CELLS];
-    const int32_t *line_q8[LINES];
+    const int16_t *line_q8[LINES];
     const double *line[LINES];
     double worst_db = 0;
     for (uint32_t width_q8 = 256; width_q8 <= 256 * LINES; width_q8 += 131) {
         for (int m = 0; m < LINES; m++) {
             for (int i = 0; i < CELLS; i++) {
-                levels[m][i] = (int32_t)hs_rng_below(&rng, 130 * 256) - 60 * 256;
+                levels[m][i] = (int16_t)((int32_t)hs_rng_below(&rng, 130 * 256) - 60 * 256);
                 powers[m][i] = pow(10, levels[m][i] / 2560.0);
             }
             line_q8[m] = levels[m];
@@ -78,8 +78,8 @@ TEST(tops_appear_where_the_reference_puts_them)
     struct hs_rng rng;
     hs_rng_seed(&rng, 22);
     static struct lm_scan_line ground;
-    static int32_t level[LM_CELLS_ROOM];
-    static int32_t laid_q8[LM_LAYOVER_ROOM];
+    static int16_t level[LM_CELLS_ROOM];
+    static int16_t laid_q8[LM_LAYOVER_ROOM];
     double power[CELLS], nearer[CELLS], laid[CELLS];
     for (int n = 0; n < 200; n++) {
         const double lean = 0.05 + hs_rng_uniform(&rng), cell_m = 1 + 9 * hs_rng_uniform(&rng);
@@ -92,7 +92,7 @@ TEST(tops_appear_where_the_reference_puts_them)
             const uint32_t height_code = hs_rng_below(&rng, 6) ? 0 : hs_rng_below(&rng, 16);
             ground.cell[i] = 120u << 8 | TINY_STRUCTURE << 4 | height_code;
             ground.elevation_m_q14[i] = (int32_t)lround(hill_m * 16384);
-            level[i] = (int32_t)hs_rng_below(&rng, 60 * 256) - 40 * 256;
+            level[i] = (int16_t)((int32_t)hs_rng_below(&rng, 60 * 256) - 40 * 256);
             power[i] = pow(10, level[i] / 2560.0);
             const double height_m = tiny_classes()->height_dm[height_code] / 10.0,
                          cells_m = l.lean_q16 / 65536.0 / (l.cell_m_q8 / 256.0);
@@ -101,7 +101,7 @@ TEST(tops_appear_where_the_reference_puts_them)
         }
         struct lm_layover layover;
         lm_layover_set(&layover, tiny_classes(), &l);
-        const int32_t *shown_q8 = lm_layover_run(&layover, &ground, level, laid_q8);
+        const int16_t *shown_q8 = lm_layover_run(&layover, &ground, level, laid_q8);
         ref_layover(power, nearer, CELLS, laid);
         for (uint32_t i = 0; i < CELLS; i++) {
             /* What is half-way between two sixteenths of a cell may be rounded to either. */

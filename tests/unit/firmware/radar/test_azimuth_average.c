@@ -37,15 +37,15 @@ TEST(the_azimuths_are_the_middles_of_equal_parts_and_the_last_is_next_to_the_mid
 TEST(the_mean_is_that_of_the_powers)
 {
     static struct lm_azimuth_average f;
-    static int32_t level_q8[8][LM_CELLS_ROOM], mean_q8[LM_CELLS_ROOM];
+    static int16_t level_q8[8][LM_CELLS_ROOM], mean_q8[LM_CELLS_ROOM];
     struct hs_rng rng;
     hs_rng_seed(&rng, 4);
     for (uint32_t log2 = 1; log2 <= LM_AZIMUTH_AVERAGE_LOG2_MAX; log2++) {
         for (uint32_t k = 0; k < 1u << log2; k++) {
             for (uint32_t i = 0; i < LM_CELLS_MAX; i++) {
                 const bool is_dark = i < 10 || hs_rng_below(&rng, 4) == 0;
-                level_q8[k][i] =
-                    is_dark ? LM_LEVEL_SHADOW : (int32_t)hs_rng_below(&rng, 70 * 256) - 50 * 256;
+                const int32_t any_q8 = (int32_t)hs_rng_below(&rng, 70 * 256) - 50 * 256;
+                level_q8[k][i] = is_dark ? LM_LEVEL_SHADOW : (int16_t)any_q8;
             }
             if (k == 0) {
                 lm_azimuth_average_begin(&f, level_q8[k], LM_CELLS_MAX);

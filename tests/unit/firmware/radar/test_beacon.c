@@ -288,7 +288,7 @@ TEST(a_live_beacon_answers_as_one_of_the_image_among_whatever_ships)
 /* In the other modes a beacon is a point of its cross section, whatever it would answer. */
 TEST(a_beacon_is_an_ordinary_point_in_the_other_modes)
 {
-    static int32_t level_q8[2][LINES][BINS];
+    static int16_t level_q8[2][LINES][BINS];
     struct sector_world *w = world_of(false);
     for (uint8_t mode = LM_SECTOR_GM; mode < LM_SECTOR_MODES; mode++) {
         for (int is_beacon = 0; is_beacon < 2; is_beacon++) {

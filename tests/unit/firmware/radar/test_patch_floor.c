@@ -11,7 +11,7 @@
 
 enum { CELLS = 256, POOL_TILES = 400 };
 
-static double run(struct lm_patch_floor *f, uint32_t number, const int32_t *level_q8,
+static double run(struct lm_patch_floor *f, uint32_t number, const int16_t *level_q8,
                   uint32_t cells)
 {
     return decibels(lm_patch_floor_run(f, &lm_radar_default.sar, number, level_q8, cells));
@@ -23,10 +23,10 @@ TEST(even_ground_leaves_its_level_less_the_leak)
     const double most_db = decibels(lm_radar_default.sar.ground_leak_most_db_q8);
     for (int db = -40; db <= 20; db += 5) {
         struct lm_patch_floor f;
-        int32_t level_q8[LM_CELLS_ROOM];
+        int16_t level_q8[LM_CELLS_ROOM];
         lm_patch_floor_clear(&f);
         for (int i = 0; i < LM_CELLS_ROOM; i++) {
-            level_q8[i] = db * 256;
+            level_q8[i] = (int16_t)(db * 256);
         }
         for (uint32_t line = 0; line < 50; line++) {
             const double wanted_db = fmin(db, most_db) + leak_db;
@@ -38,7 +38,7 @@ TEST(even_ground_leaves_its_level_less_the_leak)
 TEST(a_patch_without_ground_leaves_nothing)
 {
     struct lm_patch_floor f;
-    int32_t level_q8[LM_CELLS_ROOM];
+    int16_t level_q8[LM_CELLS_ROOM];
     lm_patch_floor_clear(&f);
     for (int i = 0; i < LM_CELLS_ROOM; i++) {
         level_q8[i] = LM_LEVEL_SHADOW;
@@ -61,10 +61,10 @@ TEST(the_mean_of_any_lines_is_that_of_the_reference)
         lm_patch_floor_clear(&f);
         for (uint32_t line = 0; line < 90; line++) {
             static struct ref_bin bins[LM_CELLS_ROOM];
-            int32_t level_q8[LM_CELLS_ROOM];
+            int16_t level_q8[LM_CELLS_ROOM];
             const int32_t about_q8 = -(int32_t)hs_rng_below(&rng, 50 * 256);
             for (uint32_t i = 0; i < cells; i++) {
-                level_q8[i] = about_q8 + (int32_t)hs_rng_below(&rng, 30 * 256);
+                level_q8[i] = (int16_t)(about_q8 + (int32_t)hs_rng_below(&rng, 30 * 256));
                 bins[i].ground = pow(10, level_q8[i] / 2560.0);
             }
             const double wanted_db = 10 * log10(ref_leak(&leak, &params, line, bins, cells));
@@ -124,7 +124,7 @@ TEST(a_shadow_is_some_16_dB_below_the_grass_and_has_grain)
     for (uint32_t k = 0; k < CELLS; k++) {
         lm_sar_prefetch(&sar, &map.tiles, k);
         tiny_map_read_tiles(&map);
-        const int32_t *level_q8 = lm_sar_draw_line(&sar, &map.tiles, &tone, &line);
+        const int16_t *level_q8 = lm_sar_draw_line(&sar, &map.tiles, &tone, &line);
         for (uint32_t i = 0; k >= 16 && i < CELLS; i++) {
             const double north_m = (i + 0.5 - CELLS / 2.0) * 5;
             const double db = decibels(level_q8[LM_SAR_GUARD + i]);

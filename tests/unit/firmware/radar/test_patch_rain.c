@@ -88,15 +88,15 @@ static double range_m(const struct world *w, uint32_t cell)
 /* What rain takes of the echoes of a line, read from levels far above all noise. */
 static void look_at_line(struct world *w, uint32_t line, double *loss_db)
 {
-    static int32_t level_q8[LM_CELLS_ROOM];
+    static int16_t level_q8[LM_CELLS_ROOM];
     for (uint32_t i = 0; i < CELLS; i++) {
-        level_q8[i] = 300 * 256;
+        level_q8[i] = 120 * 256;
     }
     if (w->rain.count != 0) {
         lm_patch_rain_run(&w->rain, &w->geometry, line, level_q8, level_q8);
     }
     for (uint32_t i = 0; i < CELLS; i++) {
-        loss_db[i] = 300 - level_q8[i] / 256.0;
+        loss_db[i] = 120 - level_q8[i] / 256.0;
     }
 }
 
@@ -147,9 +147,9 @@ TEST(the_shadow_of_rain_half_way_is_twice_as_wide)
 /* Noise and rain of a line, where the ground returns nothing. */
 static void look_into_the_dark(struct world *w, uint32_t line, double *level_db)
 {
-    static int32_t level_q8[LM_CELLS_ROOM];
+    static int16_t level_q8[LM_CELLS_ROOM];
     for (uint32_t i = 0; i < CELLS; i++) {
-        level_q8[i] = -200 * 256;
+        level_q8[i] = LM_LEVEL_SHADOW;
     }
     lm_patch_rain_run(&w->rain, &w->geometry, line, level_q8, level_q8);
     for (uint32_t i = 0; i < CELLS; i++) {
@@ -354,7 +354,7 @@ static void draw(const struct lm_environment *e, double *peak_db, double *mean_d
         tiny_map_read_tiles(&map);
     }
     for (uint32_t k = 0; k < LINES; k++) {
-        const int32_t *drawn_q8 = lm_sar_draw_line(&sar, &map.tiles, &tone, &line);
+        const int16_t *drawn_q8 = lm_sar_draw_line(&sar, &map.tiles, &tone, &line);
         for (uint32_t i = LM_SAR_GUARD; i < CELLS; i++) {
             const int32_t level_q8 = drawn_q8[i];
             peak_q8 = level_q8 > peak_q8 ? level_q8 : peak_q8;

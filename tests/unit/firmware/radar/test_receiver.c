@@ -18,7 +18,7 @@ struct world {
     struct lm_slant slant;
     struct lm_receiver receiver;
     uint32_t power[LM_CELLS_ROOM];
-    int32_t level[LM_CELLS_ROOM];
+    int16_t level[LM_CELLS_ROOM];
     struct ref_receiver ref;
     double noise_table_db[REF_SPECKLE_SLICES]; /* of the default table's looks */
 };

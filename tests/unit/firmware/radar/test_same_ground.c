@@ -27,7 +27,7 @@ static void draw_patch(struct tiny_map *map, int east, fx_bam_t look, double lev
 {
     static struct lm_sar sar;
     static struct lm_line line;
-    static int32_t level_q8[LM_CELLS_ROOM];
+    static int16_t level_q8[LM_CELLS_ROOM];
     struct lm_geo_origin origin;
     const struct lm_position middle = {map->db.centre_latitude, map->db.centre_longitude};
     lm_geo_set_origin(&origin, middle);

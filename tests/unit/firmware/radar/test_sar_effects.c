@@ -25,7 +25,7 @@ static double power_of(int32_t level_q8)
 
 static struct lm_scan_line ground;
 static uint64_t scratch[LM_CELLS_ROOM];
-static int32_t laid_q8[LM_LAYOVER_ROOM];
+static int16_t laid_q8[LM_LAYOVER_ROOM];
 
 static const struct lm_layover_view lean = {.reference_m_q10 = 100 * 1024,
                                             .lean_q16 = 19661, /* 0.3 */
@@ -44,7 +44,7 @@ TEST(a_towers_top_is_nearer_by_y_tan_psi_and_keeps_its_power)
 {
     const struct lm_classes *classes = tiny_classes();
     for (uint32_t code = 0; code < 16; code++) {
-        int32_t level_q8[LM_CELLS_ROOM];
+        int16_t level_q8[LM_CELLS_ROOM];
         struct lm_layover layover;
         flat_ground(100);
         for (int i = 0; i < CELLS; i++) {
@@ -53,7 +53,7 @@ TEST(a_towers_top_is_nearer_by_y_tan_psi_and_keeps_its_power)
         ground.cell[150] = code;
         level_q8[150] = 7 * 256;
         lm_layover_set(&layover, classes, &lean);
-        const int32_t *shown_q8 = lm_layover_run(&layover, &ground, level_q8, laid_q8);
+        const int16_t *shown_q8 = lm_layover_run(&layover, &ground, level_q8, laid_q8);
         double power = 0, moment = 0;
         for (int i = 0; i < CELLS; i++) {
             const double p = shown_q8[i] < LM_LEVEL_SHADOW / 2 ? 0 : power_of(shown_q8[i]);
@@ -74,7 +74,7 @@ TEST(layover_of_any_line_is_the_sum_of_shared_powers)
     hs_rng_seed(&rng, 2);
     lm_layover_set(&layover, tiny_classes(), &lean);
     for (int n = 0; n < 50; n++) {
-        int32_t level_q8[LM_CELLS_ROOM];
+        int16_t level_q8[LM_CELLS_ROOM];
         double expected[CELLS] = {0}, around[CELLS] = {0};
         for (int i = 0; i < CELLS; i++) {
             /* Not half-way between two sixteenths of a cell. */
@@ -83,7 +83,7 @@ TEST(layover_of_any_line_is_the_sum_of_shared_powers)
             const double top_m = 100 + nearer_16ths / 16 * 5 / 0.3;
             ground.elevation_m_q14[i] = (int32_t)lround(top_m * 16384);
             ground.cell[i] = 0;
-            level_q8[i] = (int32_t)hs_rng_below(&rng, 80 * 256) - 50 * 256;
+            level_q8[i] = (int16_t)((int32_t)hs_rng_below(&rng, 80 * 256) - 50 * 256);
             const double at = i - round(nearer_16ths) / 16, part = at - floor(at);
             for (int side = -1; side <= 2; side++) {
                 const int cell = (int)floor(at) + side;
@@ -94,7 +94,7 @@ TEST(layover_of_any_line_is_the_sum_of_shared_powers)
                 }
             }
         }
-        const int32_t *shown_q8 = lm_layover_run(&layover, &ground, level_q8, laid_q8);
+        const int16_t *shown_q8 = lm_layover_run(&layover, &ground, level_q8, laid_q8);
         for (int i = 0; i < CELLS; i++) {
             const double got = shown_q8[i] < LM_LEVEL_SHADOW / 2 ? 0 : power_of(shown_q8[i]);
             if (around[i] > 0) {
@@ -145,7 +145,7 @@ static void draw(const struct lm_sar_command *command, const struct lm_sar_setup
     /* Of the lines, which are more than cells, those in the middle. */
     const int beside = ((int)sar.lines - CELLS) / 2;
     for (int k = -beside; k < CELLS + beside; k++) {
-        const int32_t *level_q8 = lm_sar_draw_line(&sar, &map.tiles, &tone, &line);
+        const int16_t *level_q8 = lm_sar_draw_line(&sar, &map.tiles, &tone, &line);
         if (k >= 0 && k < CELLS) {
             memcpy(picture[k], level_q8, sizeof picture[k]);
         }
@@ -314,16 +314,16 @@ TEST(the_shares_are_those_of_a_smear_of_that_width_and_add_up_to_one)
 TEST(smeared_lines_hold_the_mean_power)
 {
     struct hs_rng rng;
-    static int32_t lines[LINES][CELLS];
-    int32_t level_q8[CELLS];
-    const int32_t *near_lines[LINES];
+    static int16_t lines[LINES][CELLS];
+    int16_t level_q8[CELLS];
+    const int16_t *near_lines[LINES];
     uint32_t share_q16[LINES];
     double worst_db = 0;
     hs_rng_seed(&rng, 8);
     for (int m = 0; m < LINES; m++) {
         near_lines[m] = lines[m];
         for (int i = 0; i < CELLS; i++) {
-            lines[m][i] = (int32_t)hs_rng_below(&rng, 110 * 256) - 50 * 256;
+            lines[m][i] = (int16_t)((int32_t)hs_rng_below(&rng, 110 * 256) - 50 * 256);
         }
     }
     for (uint32_t width_q8 = 300; width_q8 <= LINES * 256; width_q8 += 199) {

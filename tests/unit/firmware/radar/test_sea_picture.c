@@ -99,7 +99,7 @@ static double patch_db(struct tiny_map *map, const struct lm_environment *e)
         tiny_map_read_tiles(map);
     }
     while (sar.line < sar.lines) {
-        const int32_t *level_q8 = lm_sar_draw_line(&sar, &map->tiles, &tone, &line);
+        const int16_t *level_q8 = lm_sar_draw_line(&sar, &map->tiles, &tone, &line);
         for (uint32_t i = 40; i < 200; i++) {
             sum += pow(10, level_q8[i] / 2560.0);
             count++;

@@ -16,7 +16,7 @@ enum { CELLS = 256, LINES = 41, MIDDLE = 20, WALL = 100, FLOOR_Q8 = -80 * 256 };
 
 static const double pi = 3.14159265358979323846;
 static struct lm_side_lobes lobes;
-static int32_t picture[LINES][LM_CELLS_ROOM];
+static int16_t picture[LINES][LM_CELLS_ROOM];
 
 static double sinc(double x)
 {
@@ -93,9 +93,9 @@ TEST(a_lone_wall_has_a_cross_whose_side_lobes_are_taylors)
 
 TEST(of_many_strong_cells_only_the_strongest_of_a_line_count)
 {
-    int32_t level_q8[LM_CELLS_ROOM];
+    int16_t level_q8[LM_CELLS_ROOM];
     for (int i = 0; i < CELLS; i++) {
-        level_q8[i] = i % 20 == 10 ? (20 + i * 7 % 13) * 256 : -30 * 256;
+        level_q8[i] = (int16_t)(i % 20 == 10 ? (20 + i * 7 % 13) * 256 : -30 * 256);
     }
     lm_side_lobes_clear(&lobes, &lm_radar_default.sar.side_lobes);
     lm_side_lobes_find(&lobes, 0, level_q8, CELLS, -35 * 256, 1);
@@ -109,9 +109,9 @@ TEST(of_many_strong_cells_only_the_strongest_of_a_line_count)
 
 TEST(a_strong_field_among_fields_has_none)
 {
-    int32_t level_q8[LM_CELLS_ROOM];
+    int16_t level_q8[LM_CELLS_ROOM];
     for (int i = 0; i < CELLS; i++) {
-        level_q8[i] = 10 * 256 + i * 37 % 25 * 256;
+        level_q8[i] = (int16_t)(10 * 256 + i * 37 % 25 * 256);
     }
     lm_side_lobes_clear(&lobes, &lm_radar_default.sar.side_lobes);
     lm_side_lobes_find(&lobes, 0, level_q8, CELLS, -35 * 256, 1);
@@ -128,7 +128,7 @@ struct score {
 static double level_before[LM_PATCH_LINES_MAX * CELLS], level_wanted[LM_PATCH_LINES_MAX * CELLS];
 static double shadow_db[LM_PATCH_LINES_MAX];
 
-static void compare(struct score *s, uint32_t line, const int32_t *level_db_q8)
+static void compare(struct score *s, uint32_t line, const int16_t *level_db_q8)
 {
     for (uint32_t i = 0; i < CELLS; i++) {
         const double wanted_db = level_wanted[line * CELLS + i];
@@ -151,14 +151,15 @@ static struct ref_side_lobes law(void)
 TEST(side_lobes_of_a_field_of_points_are_the_references)
 {
     enum { FIELD = 64 };
-    static int32_t level_q8[FIELD][LM_CELLS_ROOM];
+    static int16_t level_q8[FIELD][LM_CELLS_ROOM];
     struct score score = {0};
     struct hs_rng rng;
     hs_rng_seed(&rng, 5);
     for (uint32_t k = 0; k < FIELD; k++) {
         for (uint32_t i = 0; i < CELLS; i++) {
             const uint32_t rise = hs_rng_below(&rng, 100) == 0 ? 10 + hs_rng_below(&rng, 50) : 0;
-            level_q8[k][i] = (int32_t)(hs_rng_below(&rng, 6 * 256) + rise * 256) - 18 * 256;
+            level_q8[k][i] =
+                (int16_t)((int32_t)(hs_rng_below(&rng, 6 * 256) + rise * 256) - 18 * 256);
             level_before[k * CELLS + i] = level_q8[k][i] / 256.0;
         }
         shadow_db[k] = -31;
@@ -214,7 +215,7 @@ TEST(a_patch_draws_the_references_side_lobes_into_its_lines)
     static struct lm_sar sar;
     static struct lm_line line;
     static struct lm_tone tone;
-    static int32_t sampled_q8[LM_CELLS_ROOM];
+    static int16_t sampled_q8[LM_CELLS_ROOM];
     struct score score = {0};
     struct tiny_map map;
     struct tiny_spec spec = tiny_spec_at(46, 11);
@@ -237,7 +238,7 @@ TEST(a_patch_draws_the_references_side_lobes_into_its_lines)
                      0);
     start(&sar, &map);
     for (uint32_t k = 0; k < sar.lines; k++) {
-        const int32_t *level_q8 = lm_sar_draw_line(&sar, &map.tiles, &tone, &line);
+        const int16_t *level_q8 = lm_sar_draw_line(&sar, &map.tiles, &tone, &line);
         compare(&score, k, level_q8 + LM_SAR_GUARD);
     }
     tiny_map_close(&map);

@@ -1,6 +1,7 @@
 /* From level to grey: the equations of docs/EQUATIONS.md, "Tone", in double precision.
  */
 #include "check.h"
+#include "fx/sat.h"
 #include "hs/rng.h"
 #include "lm/radar.h"
 #include "lm/status.h"
@@ -20,7 +21,8 @@ enum { CONFIGS = sizeof configs / sizeof configs[0] };
 static uint8_t grey_of(const struct lm_tone *tone, int32_t level_q8)
 {
     uint8_t grey = 0;
-    lm_tone_run(tone, &level_q8, &grey, 1);
+    const int16_t level = fx_sat_i16(level_q8);
+    lm_tone_run(tone, &level, &grey, 1);
     return grey;
 }
 
@@ -154,9 +156,9 @@ TEST(as_many_greys_are_written_as_were_asked_for)
 {
     struct lm_tone tone;
     assert_int_equal(lm_tone_set(&tone, &configs[0]), LM_OK);
-    int32_t level[70];
+    int16_t level[70];
     for (int i = 0; i < 70; i++) {
-        level[i] = (i - 45) * 256;
+        level[i] = (int16_t)((i - 45) * 256);
     }
     for (uint32_t cells = 0; cells <= 70; cells++) {
         uint8_t grey[72];

@@ -278,7 +278,7 @@ TEST(a_strobe_lifts_the_noise_of_every_bin_alike)
 {
     struct world *w = make_world();
     static uint32_t power[LM_CELLS_ROOM];
-    static int32_t quiet[LM_CELLS_ROOM], jammed[LM_CELLS_ROOM];
+    static int16_t quiet[LM_CELLS_ROOM], jammed[LM_CELLS_ROOM];
     add_jammer(w, 18520, 0, 30);
     look(w);
     lm_receiver_pulse(&w->receiver, power);
@@ -318,7 +318,7 @@ TEST(no_environment_in_range_leaves_the_bounds)
     struct hs_rng rng;
     hs_rng_seed(&rng, 15);
     static uint32_t power[LM_CELLS_ROOM];
-    static int32_t level[LM_CELLS_ROOM];
+    static int16_t level[LM_CELLS_ROOM];
     for (int n = 0; n < 2000; n++) {
         struct lm_environment *e = &w->environment;
         w->antenna = (struct lm_position){hs_bam(180 * hs_rng_uniform(&rng) - 90),

@@ -278,7 +278,7 @@ static double power_of(const struct lm_target *t, const struct lm_target_line *h
     struct lm_target_candidates candidates;
     const struct lm_target_set set = {.items = t, .count = 1};
     const struct lm_target_query scene = {.position = {hs_bam(46), hs_bam(11)}, .reach_m = RANGE_M};
-    int32_t level_q8[LM_CELLS_MAX];
+    int16_t level_q8[LM_CELLS_MAX];
     double power = 0, moment = 0;
     lm_target_candidates_select(&candidates, &set, &scene);
     for (uint32_t i = 0; i < LINES; i++) {
@@ -353,7 +353,7 @@ static int cells_filled(uint32_t stretch_cells, double range_m, bool *are_alike)
     const struct lm_target_query scene = {.position = {hs_bam(46), hs_bam(11)}, .reach_m = RANGE_M};
     struct lm_target_candidates candidates;
     struct lm_target_line line = sector_line(LINES / 2);
-    int32_t level_q8[LM_CELLS_MAX], highest = INT32_MIN, lowest = INT32_MAX;
+    int16_t level_q8[LM_CELLS_MAX], highest = INT16_MIN, lowest = INT16_MAX;
     int filled = 0;
     lm_target_candidates_select(&candidates, &set, &scene);
     line.gate_mm_s[1] = 20000;

@@ -42,7 +42,7 @@ static void draw_patch(struct fixture *f, const struct lm_target_set *set,
     /* Of the lines, which are more than cells, those in the middle. */
     const int beside = ((int)f->sar.lines - SIDE) / 2;
     for (int k = -beside; k < SIDE + beside; k++) {
-        const int32_t *level_q8 = lm_sar_draw_line(&f->sar, &f->world.tiles, &f->tone, &f->line);
+        const int16_t *level_q8 = lm_sar_draw_line(&f->sar, &f->world.tiles, &f->tone, &f->line);
         if (k >= 0 && k < SIDE) {
             memcpy(picture[k], level_q8 + LM_SAR_GUARD, sizeof picture[k]);
         }
@@ -285,7 +285,7 @@ TEST_WITH(the_lines_of_a_window_share_a_chip_without_loss, set_up, tear_down)
         near_of(f, &t, true, &candidates);
         for (int l = 0; l < LINES; l++) {
             const struct lm_target_line line = line_of(l);
-            int32_t level_q8[CELLS], bright_q8[CELLS];
+            int16_t level_q8[CELLS], bright_q8[CELLS];
             for (int c = 0; c < CELLS; c++) {
                 level_q8[c] = -100 * 256;
                 bright_q8[c] = 80 * 256; /* beside which the target is nothing */
@@ -345,7 +345,7 @@ TEST_WITH(a_chip_joins_the_ground_and_a_point_the_scatterers, set_up, tear_down)
     for (int has_chip = 0; has_chip < 2; has_chip++) {
         struct lm_target_line line = line_of(LINES / 2);
         struct lm_target_candidates candidates;
-        int32_t ground_q8[CELLS], steady_q8[CELLS];
+        int16_t ground_q8[CELLS], steady_q8[CELLS];
         int on_ground = 0, steady = 0;
         for (int c = 0; c < CELLS; c++) {
             ground_q8[c] = steady_q8[c] = -100 * 256;
@@ -424,7 +424,7 @@ TEST_WITH(without_its_chip_a_target_is_a_point_of_its_cross_section, set_up, tea
     near_of(f, &t, false, &candidates);
     for (int l = 0; l < LINES; l++) {
         const struct lm_target_line line = line_of(l);
-        int32_t level_q8[CELLS];
+        int16_t level_q8[CELLS];
         for (int c = 0; c < CELLS; c++) {
             level_q8[c] = -100 * 256;
         }

@@ -104,7 +104,7 @@ static void draw(struct fixture *f, const struct lm_target *t)
     choose_chip(f, t, &candidates);
     lm_target_patch_set(&f->points, &candidates, &g);
     for (uint32_t k = 0; k < LINES; k++) {
-        int32_t level_q8[LM_CELLS_ROOM];
+        int16_t level_q8[LM_CELLS_ROOM];
         for (uint32_t i = 0; i < CELLS; i++) {
             level_q8[i] = NOTHING_Q8;
         }

@@ -45,7 +45,7 @@ static struct lm_target_candidates near_of(const struct lm_target *targets, uint
     return candidates;
 }
 
-static void clear(int32_t *level_q8)
+static void clear(int16_t *level_q8)
 {
     for (int i = 0; i < LM_CELLS_MAX; i++) {
         level_q8[i] = LM_LEVEL_SHADOW;
@@ -74,7 +74,7 @@ static struct found sweep(const struct lm_target *targets, uint32_t count, doubl
     struct lm_target_candidates candidates;
     struct found f = {0};
     double power = 0;
-    int32_t level_q8[LM_CELLS_MAX];
+    int16_t level_q8[LM_CELLS_MAX];
     candidates =
         near_of(targets, count, (struct lm_position){hs_bam(lat), hs_bam(lon)}, (uint32_t)range_m);
     for (uint32_t i = 0; i < LINES; i++) {
@@ -142,7 +142,7 @@ TEST(a_target_is_where_the_geodesic_puts_it_within_a_metre)
         const struct lm_target t = point_at(to[0], to[1], 0, 10);
         struct lm_target_line l = sector_line(lat, 11, azimuth, 0);
         struct lm_target_candidates candidates;
-        int32_t level_q8[LM_CELLS_MAX];
+        int16_t level_q8[LM_CELLS_MAX];
         l.azimuth = hs_bam(azimuth);
         l.width = hs_bam(1.0 / 70000 * 180 / pi);
         l.cell_m_q8 = 2 * 256;
@@ -214,7 +214,7 @@ TEST(what_lies_below_the_horizon_of_the_cells_before_is_hidden)
         const struct lm_target_candidates candidates =
             near_of(&t, 1, l.position, (uint32_t)range_m);
         for (int i = -1; i <= 1; i += 2) {
-            int32_t level_q8[LM_CELLS_MAX];
+            int16_t level_q8[LM_CELLS_MAX];
             int32_t horizon[LM_CELLS_MAX];
             for (int k = 0; k < LM_CELLS_MAX; k++) {
                 horizon[k] = (int32_t)ldexp(k > 140 ? 1 : at + i * 1e-6, BITS);
@@ -256,7 +256,7 @@ TEST(a_choice_holds_for_a_kilometre_of_flight)
         wgs84_direct(46, 11, 360 * hs_rng_uniform(&rng), 1020, &from[0], &from[1]);
         const struct lm_target t = point_at(to[0], to[1], 0, 10);
         struct lm_target_candidates before, now;
-        int32_t level_q8[LM_CELLS_MAX];
+        int16_t level_q8[LM_CELLS_MAX];
         const struct lm_position here = {hs_bam(from[0]), hs_bam(from[1])};
         before = near_of(&t, 1, (struct lm_position){hs_bam(46), hs_bam(11)}, 37040);
         now = near_of(&t, 1, here, 37040);
@@ -312,7 +312,7 @@ TEST(a_target_that_is_passed_over_would_have_given_the_line_nothing)
         const struct lm_target_line l = line_beside(&rng, lat, azimuth, at_m);
         struct lm_target_candidates candidates =
             near_of(&t, 1, (struct lm_position){hs_bam(lat), hs_bam(11)}, (uint32_t)range_m);
-        int32_t quick_q8[LM_CELLS_MAX], all_q8[LM_CELLS_MAX];
+        int16_t quick_q8[LM_CELLS_MAX], all_q8[LM_CELLS_MAX];
         clear(quick_q8), clear(all_q8);
         lm_target_line_add(&candidates, &l, NULL, quick_q8);
         candidates.candidate[0].slack_m_q8 = 1u << 31;
@@ -355,7 +355,7 @@ TEST(a_record_that_passes_the_check_can_be_used)
         l.speed_mm_s = hs_rng_below(&rng, 1 << 21);
         l.wavelength_um = i % 3 ? LM_WAVELENGTH_MIN_UM : LM_WAVELENGTH_MAX_UM;
         struct lm_target_candidates candidates;
-        int32_t level_q8[LM_CELLS_MAX];
+        int16_t level_q8[LM_CELLS_MAX];
         int32_t horizon[LM_CELLS_MAX] = {0};
         const struct lm_target_horizon sight = {horizon, 20};
         clear(level_q8);

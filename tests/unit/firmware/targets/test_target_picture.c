@@ -153,7 +153,7 @@ TEST(a_mover_that_is_hidden_where_it_stands_shows_nowhere_in_a_patch)
 }
 
 /* A sweep over the target, from the right height and place: levels of each line and bin. */
-static void sweep(const struct lm_target_set *set, int32_t level_q8[SIDE][SIDE])
+static void sweep(const struct lm_target_set *set, int16_t level_q8[SIDE][SIDE])
 {
     static struct lm_sector sector;
     const struct lm_platform platform = {.position = {hs_bam(45.95), hs_bam(11)},
@@ -169,7 +169,7 @@ static void sweep(const struct lm_target_set *set, int32_t level_q8[SIDE][SIDE])
 
 /* Bins of a line that differ by more than a quarter of a decibel, and the line where they differ
  * most. */
-static int changed_bins(int32_t with[SIDE][SIDE], int32_t without[SIDE][SIDE], int bin,
+static int changed_bins(int16_t with[SIDE][SIDE], int16_t without[SIDE][SIDE], int bin,
                         int *brightest)
 {
     int bins = 0, most = 0;
@@ -188,7 +188,7 @@ static int changed_bins(int32_t with[SIDE][SIDE], int32_t without[SIDE][SIDE], i
 
 TEST(a_target_shows_in_one_bin_over_the_beam_and_a_hidden_one_nowhere)
 {
-    static int32_t with[SIDE][SIDE], without[SIDE][SIDE];
+    static int16_t with[SIDE][SIDE], without[SIDE][SIDE];
     tiny_map_open_soil(&map, SLOTS, &tone);
     const struct lm_target_set none = {0};
     sweep(&none, without);

@@ -60,7 +60,7 @@ struct view {
 };
 
 static uint32_t sweep(struct view view, const struct lm_target_set *set,
-                      int32_t level_q8[LINES_MAX][SIDE])
+                      int16_t level_q8[LINES_MAX][SIDE])
 {
     static struct lm_sector sector;
     const struct lm_platform platform = {.position = {hs_bam(45.95), hs_bam(10.95)},
@@ -88,7 +88,7 @@ struct difference {
     int most;  /* greatest difference of either sign */
 };
 
-static struct difference compare(int32_t a[LINES_MAX][SIDE], int32_t b[LINES_MAX][SIDE])
+static struct difference compare(int16_t a[LINES_MAX][SIDE], int16_t b[LINES_MAX][SIDE])
 {
     struct difference d = {0, 0};
     for (int k = 0; k < LINES_MAX; k++) {
@@ -107,7 +107,7 @@ static const struct view views[] = {{LM_SECTOR_GM, LM_FOV_NORM},  {LM_SECTOR_GMT
 
 TEST(a_live_mover_is_drawn_as_a_mover_of_the_image_in_every_mode)
 {
-    static int32_t without[LINES_MAX][SIDE], image[LINES_MAX][SIDE], told[LINES_MAX][SIDE];
+    static int16_t without[LINES_MAX][SIDE], image[LINES_MAX][SIDE], told[LINES_MAX][SIDE];
     static const double headings[] = {0, 90, 216.8698976};
     const struct lm_target_set none = {0}, live_set = {.live = &live};
     tiny_map_open_soil(&map, SLOTS, &tone);
@@ -135,7 +135,7 @@ TEST(a_live_mover_is_drawn_as_a_mover_of_the_image_in_every_mode)
 /* Of 5 m/s towards the radar across the track, DBS displaces by 5 / 180 of the range. */
 TEST(doppler_displaces_a_live_mover_as_the_law_says)
 {
-    static int32_t still[LINES_MAX][SIDE], moving[LINES_MAX][SIDE];
+    static int16_t still[LINES_MAX][SIDE], moving[LINES_MAX][SIDE];
     const struct lm_target_set live_set = {.live = &live};
     const struct view view = {LM_SECTOR_GM, LM_FOV_DBS1};
     tiny_map_open_soil(&map, SLOTS, &tone);
@@ -166,7 +166,7 @@ TEST(doppler_displaces_a_live_mover_as_the_law_says)
 
 TEST(terrain_hides_a_live_target)
 {
-    static int32_t with[LINES_MAX][SIDE], without[LINES_MAX][SIDE];
+    static int16_t with[LINES_MAX][SIDE], without[LINES_MAX][SIDE];
     const struct lm_target_set none = {0}, live_set = {.live = &live};
     tiny_map_open_soil(&map, SLOTS, &tone);
     const struct lm_target t = image_mover(46, 11, 0, 0);
@@ -188,7 +188,7 @@ TEST(terrain_hides_a_live_target)
  * bin share with others. */
 TEST(all_256_are_drawn)
 {
-    static int32_t with[LINES_MAX][SIDE], without[LINES_MAX][SIDE];
+    static int16_t with[LINES_MAX][SIDE], without[LINES_MAX][SIDE];
     const struct lm_target_set none = {0}, live_set = {.live = &live};
     tiny_map_open_soil(&map, SLOTS, &tone);
     for (size_t v = 0; v < sizeof views / sizeof *views; v++) {
@@ -213,7 +213,7 @@ TEST(all_256_are_drawn)
         shown = compare(with, without).rises;
         /* Alone, each in turn: whatever it brightens is as bright with all. */
         int lost = 0;
-        static int32_t alone[LINES_MAX][SIDE];
+        static int16_t alone[LINES_MAX][SIDE];
         static struct lm_live all;
         all = live;
         for (int i = 0; i < LM_LIVE_MAX; i += 17) {
@@ -295,7 +295,7 @@ TEST(where_there_is_no_room_the_strongest_are_taken_and_the_others_counted)
 /* What a crowded beam shows of strong ones is what it shows of them alone. */
 TEST(strong_targets_are_not_lost_in_a_crowded_beam)
 {
-    static int32_t all[LINES_MAX][SIDE], strong[LINES_MAX][SIDE], without[LINES_MAX][SIDE];
+    static int16_t all[LINES_MAX][SIDE], strong[LINES_MAX][SIDE], without[LINES_MAX][SIDE];
     const struct lm_target_set none = {0}, live_set = {.live = &live};
     tiny_map_open_soil(&map, SLOTS, &tone);
     for (size_t v = 0; v < sizeof views / sizeof *views; v++) {
