@@ -103,6 +103,12 @@ static inline bool is_before(const struct lm_strong_cell *p, uint32_t cell, int3
            (p->level_db_q8 == level_db_q8 && p->cell < (int32_t)cell);
 }
 
+/* Where the side lobes begin of one of the places, as drawn. */
+static uint16_t side_of_place(uint32_t draw)
+{
+    return (uint16_t)(draw % LM_SIDE_LOBES_OFFSETS * LM_SIDE_LOBES_CELLS);
+}
+
 /* Insert a cell that stands out, by its level. The weakest drops out of a full line, and what is
  * weaker counts no more. Out of line, it takes no registers from the search. */
 static __attribute__((noinline)) void consider(struct search *of, uint32_t cell)
@@ -120,11 +126,10 @@ static __attribute__((noinline)) void consider(struct search *of, uint32_t cell)
     for (; at > 0 && !is_before(&strong[at - 1], cell, level_db_q8); at--) {
         strong[at] = strong[at - 1];
     }
-    strong[at] = (struct lm_strong_cell){
-        .cell = (int16_t)cell,
-        .level_db_q8 = level_db_q8,
-        .right = (uint8_t)(draw % LM_SIDE_LOBES_OFFSETS),
-        .beyond = (uint8_t)(draw / LM_SIDE_LOBES_OFFSETS % LM_SIDE_LOBES_OFFSETS)};
+    strong[at] = (struct lm_strong_cell){.cell = (int16_t)cell,
+                                         .level_db_q8 = level_db_q8,
+                                         .right = side_of_place(draw),
+                                         .beyond = side_of_place(draw / LM_SIDE_LOBES_OFFSETS)};
     if (*count == config->a_line) {
         of->least_db_q8 = strong[*count - 1].level_db_q8;
     }
@@ -201,25 +206,21 @@ void lm_side_lobes_find(struct lm_side_lobes *s, uint32_t line, const int16_t *l
     }
 }
 
-/* Add a side lobe, if it is not 25 dB below what is there. */
+/* Add a side lobe, if it is not 25 dB below what is there. It is far below the point that has it:
+ * no sum is above the highest level by more than that is below 128 dB. */
 static inline void add(int16_t *level_db_q8, int32_t side_lobe)
 {
-    if (side_lobe > *level_db_q8 - LM_K_LOBES_BELOW_DB_Q8) {
-        *level_db_q8 = fx_sat_i16(fx_db_q8_sum_vec(*level_db_q8, side_lobe));
+    const int32_t there = *level_db_q8;
+    if (side_lobe > there - LM_K_LOBES_BELOW_DB_Q8) {
+        *level_db_q8 = (int16_t)fx_min_i32(fx_db_q8_sum_vec(there, side_lobe), INT16_MAX);
     }
-}
-
-/* Side lobes of points at that offset, by the cells from their own. */
-static inline const int16_t *side_of(const struct lm_side_lobes *s, uint32_t offset)
-{
-    return s->side_db_q8 + offset * LM_SIDE_LOBES_CELLS + LM_RESPONSE_REACH;
 }
 
 /* Side lobes of a point in its own line. A kernel adds all but the last, where the line has all. */
 static inline void add_along(const struct lm_side_lobes *s, const struct lm_strong_cell *p,
                              int16_t *level_db_q8, int32_t cells)
 {
-    const int16_t *const side = side_of(s, p->beyond);
+    const int16_t *const side = s->side_db_q8 + p->beyond + LM_RESPONSE_REACH;
     int32_t first = p->cell - LM_RESPONSE_REACH;
     const int32_t last = fx_min_i32(p->cell + LM_RESPONSE_REACH, cells - 1);
     if (first >= 0 && last == p->cell + LM_RESPONSE_REACH) {
@@ -236,9 +237,10 @@ static inline void add_across(const struct lm_side_lobes *s, uint32_t n, int32_t
                               int16_t *level_db_q8)
 {
     const uint32_t slot = n % LM_SIDE_LOBES_LINES;
-    for (uint32_t k = 0; k < s->line[slot].count; k++) {
-        const struct lm_strong_cell *const p = &s->line[slot].strong[k];
-        add(&level_db_q8[p->cell], p->level_db_q8 + side_of(s, p->right)[beside]);
+    const int16_t *const side = s->side_db_q8 + LM_RESPONSE_REACH + beside;
+    const struct lm_strong_cell *p = s->line[slot].strong;
+    for (const struct lm_strong_cell *const end = p + s->line[slot].count; p != end; p++) {
+        add(&level_db_q8[p->cell], p->level_db_q8 + side[p->right]);
     }
 }
 

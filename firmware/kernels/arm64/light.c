@@ -18,10 +18,10 @@ struct neon_class_lut {
     uint8x16_t height_dm[2], gain_db_q8[2], edge_db_q3, mark;
 };
 
-/* What a turn takes over from the one before it. */
+/* What a turn takes over from the one before it; and marks of all cells so far that were left. */
 struct neon_before {
     int32x4_t tangent, of_two, horizon;
-    uint8x16_t mark;
+    uint8x16_t mark, left;
 };
 
 /* Which cells of a turn are not shown: all bits of them are set. */
@@ -108,6 +108,7 @@ static inline uint8x16_t neon_edges(const struct neon_class_lut *l, struct neon_
     const uint8x16_t before = vextq_u8(b->mark, mark, 15);
     b->mark = mark;
     *left = vbicq_u8(before, mark);
+    b->left = vorrq_u8(b->left, *left);
     return vqtbl1q_u8(l->edge_db_q3, vbicq_u8(mark, before));
 }
 
@@ -261,7 +262,8 @@ static inline struct neon_before neon_before_of(const struct lm_k_lit_line *line
 {
     const int32x4_t all = vdupq_n_s32(line->start);
     const uint32_t class_index = line->tops.cell[line->tops.first] >> 4 & (LM_K_CODES - 1);
-    return (struct neon_before){all, all, all, vdupq_n_u8(line->mark_of_class[class_index])};
+    return (struct neon_before){all, all, all, vdupq_n_u8(line->mark_of_class[class_index]),
+                                vdupq_n_u8(0)};
 }
 
 void lm_k_light(const struct lm_k_lit_line *line)
@@ -296,8 +298,10 @@ void lm_k_light(const struct lm_k_lit_line *line)
     while (at.cell < end) {
         neon_cells(&l, &none, &before, &at);
     }
-    vst1q_u8(at.behind_shore, vdupq_n_u8(0)); /* looked at with an odd number of turns */
-    neon_shores(line, behind_shore, (uint32_t)first);
+    if (vmaxvq_u8(vtstq_u8(before.left, vdupq_n_u8(LM_K_WATER))) != 0) {
+        vst1q_u8(at.behind_shore, vdupq_n_u8(0)); /* looked at with an odd number of turns */
+        neon_shores(line, behind_shore, (uint32_t)first);
+    }
 }
 
 static inline int32x4_t neon_highest_of(int32x4_t highest, int32x4x4_t tangent)

@@ -66,7 +66,8 @@ TEST(a_lone_wall_has_a_cross_whose_side_lobes_are_taylors)
     for (uint32_t seed = 0; seed < 200; seed++) {
         const struct lm_strong_cell *p = draw_wall(seed);
         for (int n = -LM_RESPONSE_REACH + 1; n < LM_RESPONSE_REACH; n++) {
-            const double off[2] = {(2.0 * p->beyond - 7) / 16, (2.0 * p->right - 7) / 16};
+            const double off[2] = {(2.0 * (p->beyond / LM_SIDE_LOBES_CELLS) - 7) / 16,
+                                   (2.0 * (p->right / LM_SIDE_LOBES_CELLS) - 7) / 16};
             const int32_t shown_q8[2] = {picture[MIDDLE][WALL + n], picture[MIDDLE + n][WALL]};
             for (int way = 0; way < 2 && abs(n) >= 2; way++) {
                 const double x = fabs(n - off[way]);

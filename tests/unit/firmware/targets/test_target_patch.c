@@ -22,7 +22,7 @@ static const double height_m = 6000, cell_m = 2, range_m = 20000;
 
 /* Large, and only one is used at a time. */
 static struct lm_target_patch points;
-static int32_t picture[LINES][LM_CELLS_ROOM];
+static int16_t picture[LINES][LM_CELLS_ROOM];
 
 static struct lm_patch_geometry geometry(double lat, double lon, double look)
 {
@@ -210,7 +210,7 @@ TEST(a_point_is_at_its_place_with_all_its_power)
 TEST(what_is_left_out_lies_below_the_least_level)
 {
     const struct lm_patch_geometry g = geometry(46, 11, 0);
-    static int32_t whole[LINES][LM_CELLS_ROOM];
+    static int16_t whole[LINES][LM_CELLS_ROOM];
     for (int rcs_db = -60; rcs_db <= 60; rcs_db += 4) {
         const struct lm_target t = point_in(60.3, 70.4, rcs_db);
         find_points(&t, 1, &g, 0);
@@ -306,7 +306,7 @@ TEST(a_fluctuating_point_has_one_strength_in_a_patch)
         for (g.epoch = 0; g.epoch < 2; g.epoch++) {
             find_points(&t, 1, &g, 0);
             draw(&g, NOTHING_Q8);
-            const int32_t *left = picture[59], *right = picture[61];
+            const int16_t *left = picture[59], *right = picture[61];
             assert_true(abs(left[GUARD + 70] - right[GUARD + 70]) < 64);
             strength[g.epoch] = picture[60][GUARD + 70];
         }
@@ -388,7 +388,7 @@ TEST(what_a_mover_is_smeared_to_is_what_the_aperture_makes_of_it)
 
 TEST(lines_that_pass_by_a_target_would_have_nothing_of_it)
 {
-    static int32_t noted[LINES][LM_CELLS_ROOM];
+    static int16_t noted[LINES][LM_CELLS_ROOM];
     struct hs_rng rng;
     uint32_t passed_by = 0, touched = 0;
     hs_rng_seed(&rng, 8);
