@@ -91,7 +91,7 @@ TEST(a_shadow_gains_nothing_and_what_is_lost_ends_in_it)
     for (uint32_t i = 0; i < LM_DB_CLASSES; i++) {
         light(&most, cell_of(i)); /* which looks at the hidden cell */
         least.of_class_db_q8[i] = -0x7000;
-        assert_int_equal(light(&least, cell_of(i))->level_db_q8[1], LM_LEVEL_SHADOW);
+        assert_int_equal(light(&least, cell_of(i) & 0xff)->level_db_q8[1], LM_LEVEL_SHADOW);
     }
 }
 

@@ -114,7 +114,7 @@ static struct tiny_map map;
 static struct lm_sar sar;
 static struct lm_line line;
 static struct lm_tone tone;
-static int32_t picture[CELLS][LM_CELLS_ROOM];
+static int16_t picture[CELLS][LM_CELLS_ROOM];
 
 /* Soil, and in its middle a tower of 80 m. */
 static struct tiny_cell tower(void *ctx, const struct tiny_place *p)

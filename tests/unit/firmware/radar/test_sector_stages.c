@@ -120,7 +120,10 @@ static void judge_sample(struct trial *t, int32_t sample)
     const struct ref_antenna antenna = antenna_of(&w->radar);
     for (uint32_t i = 0; i < cells; i++) {
         const int32_t level_q8 = w->line.lit.level_db_q8[i];
-        const double before_db = decibels(level_q8 - gain.level_db_q8[i]);
+        /* A level that is held at its lowest says no more than that it is no higher. */
+        const double most_db = decibels(level_q8 - gain.level_db_q8[i]);
+        const bool is_held = level_q8 == LM_LEVEL_SHADOW;
+        const double before_db = is_held ? fmin(most_db, bins[i].echo_db) : most_db;
         const double tangent = ldexp(gain.horizon[i + 1], -(int)s->grid.tangent_bits);
         const double left_db = ref_elevation_db(&antenna, hs_degrees((fx_bam_t)s->tilt), tangent);
         note(&t->score[SAMPLE], shown(before_db) - shown(bins[i].echo_db));

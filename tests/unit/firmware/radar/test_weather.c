@@ -279,6 +279,7 @@ TEST(a_strobe_lifts_the_noise_of_every_bin_alike)
     struct world *w = make_world();
     static uint32_t power[LM_CELLS_ROOM];
     static int16_t quiet[LM_CELLS_ROOM], jammed[LM_CELLS_ROOM];
+    uint32_t held = 0;
     add_jammer(w, 18520, 0, 30);
     look(w);
     lm_receiver_pulse(&w->receiver, power);
@@ -286,8 +287,12 @@ TEST(a_strobe_lifts_the_noise_of_every_bin_alike)
     lm_receiver_pulse(&w->receiver, power);
     lm_receiver_run(&w->receiver, &w->weather, 1, 1, power, jammed);
     for (uint32_t i = 0; i < CELLS; i++) {
-        assert_true(abs(jammed[i] - quiet[i] - w->weather.noise_rise_db_q8) <= 1);
+        const int32_t risen_q8 = quiet[i] + w->weather.noise_rise_db_q8;
+        /* Near the antenna a deep fade may end at the lowest level. */
+        assert_true(quiet[i] == LM_LEVEL_SHADOW || abs(jammed[i] - fx_sat_i16(risen_q8)) <= 1);
+        held += quiet[i] == LM_LEVEL_SHADOW;
     }
+    assert_true(held < 8);
     free(w);
 }
 
