@@ -107,8 +107,14 @@ static int read_table(struct table *table, const char *path)
 static int look_up(const struct table *table, const char *name, double wavelength_m,
                    struct reflect_material *m)
 {
+    char base[TRACE_NAME_SIZE];
     const struct reflect_material *row = find(table, name);
     const struct surface *surface = row ? NULL : surface_find(name);
+    if (!row && !surface) {
+        snprintf(base, sizeof base, "%.*s", (int)strcspn(name, "."), name);
+        row = find(table, base);
+        surface = row ? NULL : surface_find(base);
+    }
     if (!row && !surface) {
         return hs_error(
             name,

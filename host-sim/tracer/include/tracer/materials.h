@@ -7,7 +7,8 @@
 
 /* Fill law->materials for the materials of traced records: from the file when `path` is not NULL,
  * else and for what it lacks from the built-in table, at law->wavelength_m. The material "ground"
- * is taken as the one called `ground`, unless that is NULL.
+ * is taken as the one called `ground`, unless that is NULL. A name that neither table has counts up
+ * to its first point: `metal.213` of a zone (mesh_zones.h) is metal.
  *
  * The file is text, a surface a line, '#' begins a remark; the last two may be missing:
  *     NAME PERMITTIVITY LOSS RMS_HEIGHT_M CORRELATION_M F_S F_R F_D F_B SPECTRUM COAT_M

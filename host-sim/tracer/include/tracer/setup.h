@@ -6,6 +6,7 @@
 #include "hs/options.h"
 #include "tracer/edges.h"
 #include "tracer/focus.h"
+#include "tracer/mesh_zones.h"
 #include "tracer/pix.h"
 #include "tracer/reflect.h"
 #include "tracer/trace.h"
@@ -14,6 +15,7 @@ struct setup {
     /* the model */
     const char *model, *up;
     bool is_as_is;
+    long zones; /* cut into so many along, SETUP_ZONES_ASIDE and SETUP_ZONES_HIGH; 0: not */
     double scale, turn_deg;
     /* the look */
     double azimuth_deg, depression_deg, wavelength_m;
@@ -28,6 +30,8 @@ struct setup {
     double resolution_m, range_db;
     long ratio, looks, seed;
 };
+
+enum { SETUP_ZONES_ASIDE = 2, SETUP_ZONES_HIGH = 3 };
 
 enum {
     SETUP_MODEL_OPTIONS = 5,

@@ -225,3 +225,18 @@ TEST(paint_on_metal_is_nearly_metal)
     const struct trace_record thick = {.material = 0};
     assert_true(reflect_record(&law, &thick).specular < 0.5F);
 }
+
+/* `metal.213` of a zone, `metal.001` of a modelling program: the law of metal. */
+TEST(a_name_with_a_point_has_the_law_of_what_stands_before_it)
+{
+    const struct trace_records r = records_of("concrete.213", "concrete", TRACE_WAVELENGTH_M);
+    struct reflect_law law = {.kind = REFLECT_FRESNEL_HH, .wavelength_m = TRACE_WAVELENGTH_M};
+    assert_int_equal(materials_for(&r, NULL, NULL, &law), 0);
+    const struct trace_record a = {.material = 0, .incidence_rad = 0.7F};
+    const struct trace_record b = {.material = 1, .incidence_rad = 0.7F};
+    assert_true(reflect_record(&law, &a).specular == reflect_record(&law, &b).specular);
+    const struct trace_records none = records_of("cheese.1", "metal", TRACE_WAVELENGTH_M);
+    assert_int_equal(materials_for(&none, NULL, NULL, &law), -1);
+    const struct trace_records empty = records_of(".1", "metal", TRACE_WAVELENGTH_M);
+    assert_int_equal(materials_for(&empty, NULL, NULL, &law), -1);
+}

@@ -3,6 +3,7 @@
 #include "shapes.h"
 #include "support.h"
 #include "tracer/mesh_audit.h"
+#include "tracer/mesh_zones.h"
 #include "tracer/model_file.h"
 #include "tracer/models.h"
 #include "tracer/scene.h"
@@ -440,4 +441,88 @@ TEST(slicy_is_met_where_the_published_mesh_is)
     scene_close(&their_scene);
     mesh_free(&ours);
     mesh_free(&theirs);
+}
+
+/* ---- zones ---- */
+
+static double whole_area_of(const struct mesh *m)
+{
+    double sum = 0;
+    for (uint32_t i = 0; i < m->triangle_count; i++) {
+        sum += area_of(m, &m->triangles[i]);
+    }
+    return sum;
+}
+
+/* The piece of low..high that x lies in, from 1. */
+static int piece(double x, double low, double high, int count)
+{
+    const int i = (int)floor((x - low) / (high - low) * count) + 1;
+    return i < 1 ? 1 : i > count ? count : i;
+}
+
+/* The middle of each triangle is where its material's digits say. */
+static void assert_zones_are_named(const struct mesh *m, const struct mesh_zones *z)
+{
+    struct vec low, high;
+    mesh_bounds(m, &low, &high);
+    const double wide = fmax(-low.y, high.y);
+    for (uint32_t i = 0; i < m->triangle_count; i++) {
+        const struct mesh_triangle *t = &m->triangles[i];
+        struct vec middle = {0, 0, 0};
+        for (int k = 0; k < 3; k++) {
+            middle = vec_mad(middle, m->vertices[t->corner[k]], 1.0 / 3);
+        }
+        const char *digits = strchr(m->materials[t->material], '.');
+        char expected[8];
+        snprintf(expected, sizeof expected, ".%d%d%d", piece(middle.x, low.x, high.x, z->along),
+                 piece(fabs(middle.y), 0, wide, z->aside), piece(middle.z, low.z, high.z, z->high));
+        assert_non_null(digits);
+        assert_string_equal(digits, expected);
+    }
+}
+
+TEST(zones_cut_a_model_and_lose_nothing)
+{
+    const struct mesh_zones zones = {4, 2, 3};
+    struct mesh whole = {0}, cut = {0};
+    model_tank(&whole);
+    model_tank(&cut);
+    assert_int_equal(mesh_zone(&cut, &zones, "tank"), 0);
+    assert_true(cut.triangle_count > whole.triangle_count);
+    assert_true(fabs(whole_area_of(&cut) - whole_area_of(&whole)) < 1e-6);
+    assert_true(fabs(volume_of(&cut) - volume_of(&whole)) < 1e-6);
+    assert_zones_are_named(&cut, &zones);
+    struct vec low, high, cut_low, cut_high;
+    mesh_bounds(&whole, &low, &high);
+    mesh_bounds(&cut, &cut_low, &cut_high);
+    assert_true(vec_length(vec_sub(low, cut_low)) + vec_length(vec_sub(high, cut_high)) < 1e-12);
+    mesh_free(&whole);
+    mesh_free(&cut);
+}
+
+/* A face that lies in a border belongs to one zone: it would be traced twice. */
+TEST(a_face_in_a_border_is_there_once)
+{
+    const struct mesh_zones zones = {2, 2, 2};
+    struct mesh m = {0};
+    const uint32_t metal = mesh_material(&m, "metal");
+    shape_box(&m, (struct vec){-1, -1, 0}, (struct vec){1, 1, 1}, metal);
+    shape_box(&m, (struct vec){0, 0, 0}, (struct vec){1, 1, 0.5}, metal);
+    const double area = whole_area_of(&m);
+    assert_int_equal(mesh_zone(&m, &zones, "boxes"), 0);
+    assert_true(fabs(whole_area_of(&m) - area) < 1e-9);
+    mesh_free(&m);
+}
+
+TEST(more_zones_than_materials_fit_are_refused_and_the_model_is_as_it_was)
+{
+    const struct mesh_zones zones = {9, 2, 3};
+    struct mesh m = {0};
+    model_tank(&m);
+    const uint32_t triangles = m.triangle_count;
+    assert_int_equal(mesh_zone(&m, &zones, "tank"), -1);
+    assert_int_equal(m.triangle_count, triangles);
+    assert_string_equal(m.materials[0], "metal");
+    mesh_free(&m);
 }
