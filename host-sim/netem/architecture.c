@@ -19,6 +19,7 @@ const struct nm_architecture nm_architectures[NM_ARCHITECTURES] = {
     {"EP6", NM_TWO_NETWORKS, FIVE(1, NM_SIGMOID)},
     {"EP7", NM_TWO_NETWORKS, {NM_INPUTS, 4, {32, 64, 32, 1}, NM_SIGMOID}},
     {"EP8", NM_TWO_NETWORKS, {NM_INPUTS, 6, {16, 32, 64, 32, 32, 1}, NM_SIGMOID}},
+    {"EP9", NM_TWO_NETWORKS, {NM_INPUTS_MAX, 6, {16, 32, 64, 32, 32, 1}, NM_SIGMOID}},
 };
 
 const struct nm_architecture *nm_architecture_find(const char *name)

@@ -17,6 +17,15 @@ static int reserve(double **array, size_t count)
 static int make_room(struct nm_netem *em, const struct nm_paths *paths)
 {
     for (int d = 0; d < NM_DIRECTIONS; d++) {
+        const size_t inputs =
+            (size_t)paths->rows[d] * (size_t)em->architecture->network.inputs + NM_INPUTS_MAX;
+        if (inputs >= em->feature_capacity[d]) {
+            em->feature_capacity[d] = 0;
+            if (reserve(&em->features[d], inputs) != 0) {
+                return -1;
+            }
+            em->feature_capacity[d] = inputs + 1;
+        }
         const size_t need = nm_network_activity_size(&em->architecture->network, paths->rows[d]);
         if (need >= em->capacity[d]) {
             em->capacity[d] = 0;
@@ -37,6 +46,14 @@ static int make_room(struct nm_netem *em, const struct nm_paths *paths)
         em->split_capacity = rows + 1;
     }
     return 0;
+}
+
+static void make_features(struct nm_netem *em, const struct nm_paths *paths, int d)
+{
+    const size_t inputs = (size_t)em->architecture->network.inputs;
+    for (int r = 0; r < paths->rows[d]; r++) {
+        nm_features_of(em->architecture, &paths->table[d][r], em->features[d] + (size_t)r * inputs);
+    }
 }
 
 /* Where the weights of the network for a direction begin. */
@@ -63,8 +80,9 @@ int nm_netem_forward(struct nm_netem *em, const double *weights, const struct nm
     const double *out[NM_DIRECTIONS] = {NULL};
     const int networks = a->wiring == NM_TWO_OUTPUTS ? 1 : NM_DIRECTIONS;
     for (int d = 0; d < networks; d++) {
+        make_features(em, paths, d);
         out[d] = nm_network_forward(&a->network, weights + weights_of(a, (enum nm_direction)d),
-                                    paths->features[d], paths->rows[d], em->activity[d]);
+                                    em->features[d], paths->rows[d], em->activity[d]);
     }
     *c = (struct nm_coefficients){out[NM_BK], out[NM_SP], NM_SP};
     if (a->wiring == NM_TWO_OUTPUTS) {
@@ -94,7 +112,7 @@ static void two_outputs_backward(struct nm_netem *em, const double *weights,
     memset(sp, 0, (size_t)rows * sizeof *sp);
     nm_paths_backward(paths, c, d_image, bk, sp);
     join_outputs(bk, sp, rows, em->delta[NM_BK] + nm_network_output_offset(net, rows));
-    nm_network_backward(net, weights, paths->features[NM_BK], rows, em->activity[NM_BK],
+    nm_network_backward(net, weights, em->features[NM_BK], rows, em->activity[NM_BK],
                         em->delta[NM_BK], gradient);
 }
 
@@ -114,7 +132,7 @@ void nm_netem_backward(struct nm_netem *em, const double *weights, const struct 
     nm_paths_backward(paths, c, d_image, at[NM_BK], at[NM_SP]);
     for (int d = 0; d < NM_DIRECTIONS; d++) {
         const size_t offset = weights_of(a, (enum nm_direction)d);
-        nm_network_backward(&a->network, weights + offset, paths->features[d], paths->rows[d],
+        nm_network_backward(&a->network, weights + offset, em->features[d], paths->rows[d],
                             em->activity[d], em->delta[d], gradient + offset);
     }
 }
@@ -122,8 +140,8 @@ void nm_netem_backward(struct nm_netem *em, const double *weights, const struct 
 double nm_netem_ask(const struct nm_architecture *a, const double *weights,
                     const struct nm_reflection *reflection, enum nm_direction direction)
 {
-    double features[NM_INPUTS], activity[ROW_ACTIVITY_MAX];
-    nm_features_of(reflection, features);
+    double features[NM_INPUTS_MAX], activity[ROW_ACTIVITY_MAX];
+    nm_features_of(a, reflection, features);
     const double *out =
         nm_network_forward(&a->network, weights + weights_of(a, direction), features, 1, activity);
     return out[a->wiring == NM_TWO_OUTPUTS ? direction : 0];
@@ -132,6 +150,7 @@ double nm_netem_ask(const struct nm_architecture *a, const double *weights,
 void nm_netem_free(struct nm_netem *em)
 {
     for (int d = 0; d < NM_DIRECTIONS; d++) {
+        free(em->features[d]);
         free(em->activity[d]);
         free(em->delta[d]);
         free(em->split[d]);

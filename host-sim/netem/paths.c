@@ -62,24 +62,33 @@ static int32_t table_find(struct table *t, const struct nm_reflection *r)
     return t->count++;
 }
 
-void nm_features_of(const struct nm_reflection *r, double features[NM_INPUTS])
+/* The angle between the normal and the bisector of the way in and the way out: both ways have
+ * length 1, so their sum has 2 cos(turn / 2). */
+static double bisector_rad(const struct nm_reflection *r)
 {
-    features[0] = r->material - 1.0;
-    features[1] = 4 * r->incidence_rad / pi - 1;
-    features[2] = 2 * r->leaving_rad / pi - 1;
-    features[3] = 2 * r->turn_rad / pi - 1;
+    const double both = 2 * cos(r->turn_rad / 2);
+    const double along = cos(r->incidence_rad) + cos(r->leaving_rad);
+    return both > 1e-9 ? acos(fmax(fmin(along / both, 1), -1)) : pi / 2;
 }
 
-static int features_make(struct nm_paths *p, enum nm_direction d)
+void nm_features_of(const struct nm_architecture *a, const struct nm_reflection *r,
+                    double features[NM_INPUTS_MAX])
 {
-    p->features[d] = malloc(((size_t)p->rows[d] * NM_INPUTS + 1) * sizeof(double));
-    if (!p->features[d]) {
-        return hs_error("paths", "trace with fewer rays", "out of memory");
+    static const double near_rad = 0.1, one = 4;
+    double *angles = features;
+    if (a->network.inputs == NM_INPUTS) {
+        *angles++ = r->material - 1.0;
     }
-    for (int r = 0; r < p->rows[d]; r++) {
-        nm_features_of(&p->table[d][r], p->features[d] + (size_t)r * NM_INPUTS);
+    angles[0] = 4 * r->incidence_rad / pi - 1;
+    angles[1] = 2 * r->leaving_rad / pi - 1;
+    angles[2] = 2 * r->turn_rad / pi - 1;
+    if (a->network.inputs != NM_INPUTS) {
+        const double off = bisector_rad(r);
+        angles[3] = 4 * off / pi - 1;
+        angles[4] = exp(-off / near_rad);
+        memset(features + NM_ANGLE_INPUTS, 0, TRACE_MATERIALS_MAX * sizeof *features);
+        features[NM_ANGLE_INPUTS + r->material] = one;
     }
-    return 0;
 }
 
 int nm_materials_match(const struct nm_materials *known, const struct trace_records *records,
@@ -199,7 +208,6 @@ int nm_paths_build(struct nm_paths *p, const struct trace_records *records,
         p->table[d] = tables[d].rows;
         p->rows[d] = tables[d].count;
         free(tables[d].slots);
-        result = result == 0 ? features_make(p, (enum nm_direction)d) : result;
     }
     if (result != 0) {
         nm_paths_free(p);
@@ -211,7 +219,6 @@ void nm_paths_free(struct nm_paths *p)
 {
     for (int d = 0; d < NM_DIRECTIONS; d++) {
         free(p->table[d]);
-        free(p->features[d]);
     }
     free(p->first);
     free(p->steps);

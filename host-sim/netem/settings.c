@@ -38,6 +38,11 @@ void nm_view_options(struct nm_settings *s, struct hs_option *o)
          "N x N of them meet a cell of level ground", false},
         {"bounces", HS_INTEGER, &t->bounces, 1, TRACE_BOUNCES_MAX, "N", "reflections followed",
          false},
+        {"zones", HS_INTEGER, &t->zones, 0, MESH_ZONES_MAX, "N",
+         "cut the model into N pieces along, 2 aside and 3 upwards, each of a material of its "
+         "own;\n"
+         "0: as it is",
+         false},
     };
     setup_model_options(t, o);
     memcpy(o + SETUP_MODEL_OPTIONS, options, sizeof options);
@@ -104,8 +109,10 @@ void nm_chip_options(struct nm_settings *s, struct hs_option *o)
 void nm_train_options(struct nm_settings *s, struct hs_option *o)
 {
     const struct hs_option options[NM_TRAIN_OPTIONS] = {
-        {"architecture", HS_WORD, &s->architecture, 0, 0, "EP1|EP2|EP3|EP4|EP5|EP6|EP7|EP8",
-         "Tables III and IV; EP8: a network for each direction, 16-32-64-32-32-1", false},
+        {"architecture", HS_WORD, &s->architecture, 0, 0, "EP1|EP2|EP3|EP4|EP5|EP6|EP7|EP8|EP9",
+         "Tables III and IV; EP8: a network for each direction, 16-32-64-32-32-1; EP9: likewise,\n"
+         "fed with an input for each material and with the distance from a mirror's angle",
+         false},
         {"loss", HS_WORD, &s->loss, 0, 0, "mse|mae", "mse: (14); mae: (13)", false},
         {"method", HS_WORD, &s->method, 0, 0, "adam|sgd", "of descent", false},
         {"rate", HS_REAL, &s->rate, 1e-9, 1e3, "R", "of the reflection networks", false},
@@ -140,7 +147,7 @@ int nm_settings_plan(const struct nm_settings *s, struct nm_plan *plan,
     int loss, method;
     *architecture = nm_architecture_find(s->architecture);
     if (!*architecture) {
-        return hs_error("--architecture", "give EP1 to EP8", "there is no %s", s->architecture);
+        return hs_error("--architecture", "give EP1 to EP9", "there is no %s", s->architecture);
     }
     if (choose("--loss", s->loss, "mse", "mae", &loss) != 0 ||
         choose("--method", s->method, "adam", "sgd", &method) != 0) {

@@ -1,13 +1,19 @@
-/* Architectures of reflection networks that Niu compares: EP1 to EP5 of Table III and Fig. 17, EP6
- * to EP8 of Table IV. */
+/* Architectures of reflection networks: those that Niu compares, EP1 to EP5 of Table III and Fig.
+ * 17, EP6 to EP8 of Table IV; and EP9 of ours, which is EP8 with other inputs. */
 #ifndef NETEM_ARCHITECTURE_H
 #define NETEM_ARCHITECTURE_H
 
 #include "netem/network.h"
+#include "tracer/records.h"
 
 /* Inputs of a network for one reflection, each within -1..1: material, incident angle, angle of
  * the way out to the normal, angle between the ways in and out (Table I; paths.h makes them). */
 enum { NM_INPUTS = 4 };
+
+/* EP9's: the three angles; the angle between the normal and the bisector of both ways, which is 0
+ * where a mirror would send the ray to the radar, and how near it is to 0; and one input for each
+ * material, of which one is not 0, so that materials have no order. */
+enum { NM_ANGLE_INPUTS = 5, NM_INPUTS_MAX = NM_ANGLE_INPUTS + TRACE_MATERIALS_MAX };
 
 /* Fig. 17. */
 enum nm_wiring {
@@ -17,12 +23,12 @@ enum nm_wiring {
 };
 
 struct nm_architecture {
-    const char *name; /* "EP1" to "EP8" */
+    const char *name; /* "EP1" to "EP9" */
     enum nm_wiring wiring;
     struct nm_network network; /* one of them, where there are two alike */
 };
 
-enum { NM_ARCHITECTURES = 8 };
+enum { NM_ARCHITECTURES = 9 };
 extern const struct nm_architecture nm_architectures[NM_ARCHITECTURES];
 
 /* NULL when there is no such name. */

@@ -8,10 +8,10 @@
 /* Scratch that grows to the largest picture seen; zeroed before its first use. */
 struct nm_netem {
     const struct nm_architecture *architecture; /* borrowed */
-    double *activity[NM_DIRECTIONS], *delta[NM_DIRECTIONS];
+    double *features[NM_DIRECTIONS], *activity[NM_DIRECTIONS], *delta[NM_DIRECTIONS];
     double
         *split[2 * NM_DIRECTIONS]; /* outputs of one network taken apart, and their derivatives */
-    size_t capacity[NM_DIRECTIONS], split_capacity;
+    size_t feature_capacity[NM_DIRECTIONS], capacity[NM_DIRECTIONS], split_capacity;
 };
 
 /* Coefficients of all rows of `paths` from `weights` (nm_architecture_size numbers). They stay good

@@ -40,7 +40,6 @@ struct nm_paths {
     double ray_weight;                          /* power of a ray: cell areas it stands for */
     int rows[NM_DIRECTIONS];                    /* different reflections */
     struct nm_reflection *table[NM_DIRECTIONS]; /* owned */
-    double *features[NM_DIRECTIONS];            /* owned: rows x NM_INPUTS, each in -1..1 */
     int ray_count;
     int32_t *first;        /* owned: ray_count + 1; steps of ray i */
     struct nm_step *steps; /* owned: those of a ray follow one another */
@@ -65,8 +64,10 @@ int nm_paths_build(struct nm_paths *paths, const struct trace_records *records,
                    const struct nm_materials *known);
 void nm_paths_free(struct nm_paths *paths);
 
-/* The inputs of a network for one reflection, each within -1..1 for materials 0..2. */
-void nm_features_of(const struct nm_reflection *reflection, double features[NM_INPUTS]);
+/* The inputs of a network of the architecture for one reflection. The paper's are within -1..1 for
+ * materials 0..2. */
+void nm_features_of(const struct nm_architecture *a, const struct nm_reflection *reflection,
+                    double features[NM_INPUTS_MAX]);
 
 /* Reflection coefficients for every row of the tables. Where one network gives both directions at
  * once, `sp` goes by the rows of the BK table: sp_by says which table's. */
