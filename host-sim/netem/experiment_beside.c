@@ -1,5 +1,9 @@
 #include "netem/experiment.h"
 
+#include "hs/error.h"
+
+#include <stdlib.h>
+
 /* Mean fit of the other vehicle's chips, each from its own azimuth. */
 static int fit_all(struct nm_training *t, const struct nm_samples *theirs, double gain,
                    struct nm_fit *mean)
@@ -17,30 +21,63 @@ static int fit_all(struct nm_training *t, const struct nm_samples *theirs, doubl
     return 0;
 }
 
-static int compare(struct nm_training *t, const struct nm_samples *ours,
-                   const struct nm_samples *theirs, double gain, bool *is_first,
-                   bool *is_first_by_mse)
+/* Does a picture of the aspect of `own` fit that chip better than `other`'s? */
+static int compare_picture(struct nm_training *t, const double *picture,
+                           const struct nm_sample *own, const struct nm_sample *other, double gain,
+                           bool *by_cw_ssim, bool *by_mse)
 {
-    for (int i = 0; i < ours->count; i++) {
-        struct nm_fit own, other;
-        const struct nm_sample *s = &ours->items[i];
-        const struct nm_sample *near = nm_nearest(theirs, s->azimuth_deg, false);
-        if (near &&
-            (nm_fit_chip(t, s, s, gain, &own) != 0 || nm_fit_chip(t, s, near, gain, &other) != 0)) {
-            return -1;
-        }
-        is_first[i] = is_first[i] && (!near || own.best_cw_ssim > other.best_cw_ssim);
-        is_first_by_mse[i] = is_first_by_mse[i] && (!near || own.mse < other.mse);
+    struct nm_fit ours, theirs;
+    if (nm_fit_picture(t, picture, own, gain, &ours) != 0 ||
+        nm_fit_picture(t, picture, other, gain, &theirs) != 0) {
+        return -1;
     }
+    *by_cw_ssim = *by_cw_ssim && ours.best_cw_ssim > theirs.best_cw_ssim;
+    *by_mse = *by_mse && ours.mse < theirs.mse;
     return 0;
+}
+
+static int compare_chip(struct nm_training *t, const struct nm_samples *training,
+                        const struct nm_sample *own, const struct nm_sample *other, double gain,
+                        double *cut, struct nm_first *first)
+{
+    const struct nm_sample *near = nm_nearest(training, own->azimuth_deg, true);
+    if (nm_simulate(&t->simulator, &t->model, &own->paths) != 0 ||
+        compare_picture(t, t->simulator.pixels, own, other, gain, &first->by_cw_ssim,
+                        &first->by_mse) != 0) {
+        return -1;
+    }
+    if (!near) {
+        first->null_by_cw_ssim = first->null_by_mse = false;
+        return 0;
+    }
+    nm_picture_cut(&near->real, near->origin, t->simulator.side_px, cut);
+    return compare_picture(t, cut, own, other, 1, &first->null_by_cw_ssim, &first->null_by_mse);
+}
+
+static int compare(struct nm_training *t, const struct nm_samples *training,
+                   const struct nm_samples *ours, const struct nm_samples *theirs, double gain,
+                   struct nm_first *firsts)
+{
+    const size_t side = (size_t)t->simulator.side_px;
+    double *cut = malloc(side * side * sizeof *cut);
+    int result = cut ? 0 : hs_error("scores", NULL, "out of memory");
+    for (int i = 0; i < ours->count && result == 0; i++) {
+        const struct nm_sample *other = nm_nearest(theirs, ours->items[i].azimuth_deg, false);
+        if (other) {
+            result = compare_chip(t, training, &ours->items[i], other, gain, cut, &firsts[i]);
+        }
+    }
+    free(cut);
+    return result;
 }
 
 int nm_experiment_beside(struct nm_experiment *e, const struct nm_samples *chips,
                          const struct nm_chip_list *others, const struct nm_summary *summary,
-                         struct nm_vehicle *vehicle, bool *is_first, bool *is_first_by_mse)
+                         struct nm_vehicle *vehicle, struct nm_first *firsts)
 {
     struct nm_dataset d;
     const struct nm_calibration calibration = nm_settings_calibration(&e->settings);
+    const struct nm_samples training = nm_dataset_training(&e->dataset);
     const double gain = summary->learned_best_gain;
     if (nm_dataset_load(&d, others, &e->view, &calibration, 0, 1) != 0) {
         return -1;
@@ -49,7 +86,7 @@ int nm_experiment_beside(struct nm_experiment *e, const struct nm_samples *chips
     vehicle->count = d.count;
     vehicle->fit = (struct nm_fit){0, 0, 0};
     const int result = fit_all(e->training, &theirs, gain, &vehicle->fit) == 0
-                           ? compare(e->training, chips, &theirs, gain, is_first, is_first_by_mse)
+                           ? compare(e->training, &training, chips, &theirs, gain, firsts)
                            : -1;
     nm_dataset_free(&d);
     return result;

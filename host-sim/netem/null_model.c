@@ -136,16 +136,14 @@ int nm_null_scores(struct nm_training *t, const struct nm_samples *training,
     return result;
 }
 
-int nm_fit_chip(struct nm_training *t, const struct nm_sample *aspect,
-                const struct nm_sample *sample, double best_gain, struct nm_fit *fit)
+int nm_fit_picture(struct nm_training *t, const double *picture, const struct nm_sample *sample,
+                   double best_gain, struct nm_fit *fit)
 {
     const int side = t->simulator.side_px, pixels = side * side;
     double *cut = malloc(2 * (size_t)pixels * sizeof *cut);
-    if (!cut || nm_simulate(&t->simulator, &t->model, &aspect->paths) != 0) {
-        free(cut);
+    if (!cut) {
         return hs_error("scores", NULL, "out of memory");
     }
-    const double *picture = t->simulator.pixels;
     nm_picture_cut(&sample->real, place(t, picture, sample), side, cut);
     nm_brighten(picture, pixels, best_gain, cut + pixels);
     fit->mse = nm_score_mse(picture, cut, side);
@@ -154,4 +152,12 @@ int nm_fit_chip(struct nm_training *t, const struct nm_sample *aspect,
                            : -1;
     free(cut);
     return result;
+}
+
+int nm_fit_chip(struct nm_training *t, const struct nm_sample *aspect,
+                const struct nm_sample *sample, double best_gain, struct nm_fit *fit)
+{
+    return nm_simulate(&t->simulator, &t->model, &aspect->paths) == 0
+               ? nm_fit_picture(t, t->simulator.pixels, sample, best_gain, fit)
+               : -1;
 }

@@ -4,12 +4,14 @@
 #include "hs/error.h"
 #include "hs/progress.h"
 #include "hs/report.h"
+#include "netem/model_file.h"
 #include "netem/search.h"
 #include "netem/settings.h"
 
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
+#include <string.h>
 
 static const struct hs_usage usage = {
     "register", "find from where chips were taken that do not say so",
@@ -18,17 +20,20 @@ static const struct hs_usage usage = {
     "gain that calibrates the chip by its clutter. With --in-order the chips are taken as a\n"
     "collection in the order of the list: circles about the target in even steps, so that a\n"
     "chip whose front looks like its back is told by its neighbours. Prints how ambiguous the\n"
-    "choice is."};
+    "choice is. Where fronts look like backs on all of them, the whole chain may be the wrong way\n"
+    "round: --turned gives the other one; train on both and keep what fits chips held out better.\n"
+    "With --training the pictures are those of a learned simulator, which lie better."};
 
-enum { OPTIONS = NM_TARGET_OPTIONS + NM_CHIP_OPTIONS + 5 };
+enum { OPTIONS = NM_TARGET_OPTIONS + NM_CHIP_OPTIONS + 7 };
 static const double ambiguous = 0.02; /* of the correlation coefficient */
 
 /* All that one run holds. */
 struct run {
     struct nm_settings settings;
-    const char *out, *scores;
+    const char *out, *scores, *learned;
+    struct nm_training *training; /* of the file `learned`; NULL without one */
     long views, reach_px;
-    bool is_in_order;
+    bool is_in_order, is_turned;
     struct nm_chip_list list;
     struct nm_library library;
     struct nm_searcher searcher;
@@ -54,40 +59,88 @@ static int draw_view(const struct run *r, const struct nm_target_view *view, str
     return result;
 }
 
-static int draw_views(struct run *r, const struct nm_target_view *view, struct nm_netpix *pix)
+static int show_view(struct run *r, const struct nm_target_view *view, int v)
 {
+    struct nm_paths paths;
+    struct nm_training *t = r->training;
+    const size_t pixels = (size_t)r->library.side_px * (size_t)r->library.side_px;
+    if (nm_target_view_paths(view, v * 360.0 / r->library.views, view->setup.depression_deg, &paths,
+                             NULL) != 0) {
+        return -1;
+    }
+    const int result = nm_simulate(&t->simulator, &t->model, &paths);
+    memcpy(r->library.pictures + (size_t)v * pixels, t->simulator.pixels,
+           pixels * sizeof *t->simulator.pixels);
+    nm_paths_free(&paths);
+    return result;
+}
+
+/* The learned views: they have the chips' level already. */
+static int show_views(struct run *r, struct nm_target_view *view)
+{
+    struct hs_progress progress;
+    int result = 0;
+    view->known = &r->training->materials;
+    hs_progress_begin(&progress, "views", (uint64_t)r->library.views);
+    for (int v = 0; v < r->library.views && result == 0; v++) {
+        result = show_view(r, view, v);
+        hs_progress_update(&progress, (uint64_t)v + 1);
+    }
+    hs_progress_end(&progress);
+    return result;
+}
+
+static int take_training(struct run *r)
+{
+    r->training = calloc(1, sizeof *r->training);
+    if (!r->training) {
+        return hs_error("training", NULL, "out of memory");
+    }
+    if (nm_model_read(r->training, r->learned, (int)r->settings.setup.cells) != 0) {
+        free(r->training);
+        r->training = NULL;
+        return -1;
+    }
+    return 0;
+}
+
+/* The untrained views, brought to the chips' level. */
+static int draw_views(struct run *r, const struct nm_target_view *view)
+{
+    struct nm_netpix pix;
     const struct setup *s = &r->settings.setup;
     double kernel[NM_LARGE * NM_LARGE];
     double *own = malloc((size_t)s->cells * (size_t)s->cells * sizeof *own);
     int result = own ? 0 : hs_error("views", NULL, "out of memory");
     struct hs_progress progress;
+    if (result != 0 || nm_netpix_open(&pix, (int)s->cells) != 0) {
+        free(own);
+        return -1;
+    }
     nm_kernel_make(s->resolution_m, s->cell_m, 1e-6, kernel);
     hs_progress_begin(&progress, "views", (uint64_t)r->library.views);
     for (int v = 0; v < r->library.views && result == 0; v++) {
-        result = draw_view(r, view, pix, kernel, v, own);
+        result = draw_view(r, view, &pix, kernel, v, own);
         hs_progress_update(&progress, (uint64_t)v + 1);
     }
     hs_progress_end(&progress);
+    nm_netpix_close(&pix);
     free(own);
-    return result;
+    return result == 0 ? nm_library_calibrate(&r->library, r->settings.calibration.clutter) : -1;
 }
 
 static int make_library(struct run *r)
 {
     struct nm_target_view view;
-    struct nm_netpix pix;
     const struct setup *s = &r->settings.setup;
-    if (nm_library_open(&r->library, (int)r->views, (int)s->cells / NM_CELLS_PER_PIXEL) != 0 ||
+    if ((r->learned && take_training(r) != 0) ||
+        nm_library_open(&r->library, (int)r->views, (int)s->cells / NM_CELLS_PER_PIXEL) != 0 ||
         nm_target_view_open(&view, s, s->depression_deg) != 0) {
         return -1;
     }
-    int result = nm_netpix_open(&pix, (int)s->cells);
-    if (result == 0) {
-        result = draw_views(r, &view, &pix);
-        nm_netpix_close(&pix);
-    }
+    const int result = r->training ? show_views(r, &view) : draw_views(r, &view);
     nm_target_view_close(&view);
-    return result == 0 ? nm_library_calibrate(&r->library, r->settings.calibration.clutter) : -1;
+    return result;
 }
 
 static int match_chip(struct run *r, int i, const struct nm_calibration *calibration)
@@ -187,12 +240,17 @@ static void print_summary(const struct run *r)
 
 static int choose(struct run *r)
 {
+    int result = 0;
     if (r->is_in_order) {
-        return nm_choose_in_order(r->matches, r->list.count, r->library.views, r->chosen,
-                                  &r->step_deg);
+        result = nm_choose_in_order(r->matches, r->list.count, r->library.views, r->chosen,
+                                    &r->step_deg);
+    } else {
+        nm_choose_alone(r->matches, r->list.count, r->library.views, r->chosen);
     }
-    nm_choose_alone(r->matches, r->list.count, r->library.views, r->chosen);
-    return 0;
+    for (int i = 0; i < r->list.count && result == 0 && r->is_turned; i++) {
+        r->chosen[i] = (r->chosen[i] + r->library.views / 2) % r->library.views;
+    }
+    return result;
 }
 
 static int run(struct run *r)
@@ -222,6 +280,10 @@ static void close_run(struct run *r)
     }
     free(r->matches);
     free(r->chosen);
+    if (r->training) {
+        nm_training_close(r->training);
+    }
+    free(r->training);
     nm_library_close(&r->library);
     nm_searcher_close(&r->searcher);
     nm_chip_list_free(&r->list);
@@ -235,14 +297,18 @@ int nm_cmd_register(int argc, char **argv)
         {"out", HS_OUTPUT, &r.out, 0, 0, "FILE", "the list", true},
         {"scores", HS_OUTPUT, &r.scores, 0, 0, "FILE", "how well each chip fits, as a table",
          false},
+        {"turned", HS_FLAG, &r.is_turned, 0, 0, NULL,
+         "take the views opposite to the best: the chips were registered back to front", false},
+        {"training", HS_INPUT, &r.learned, 0, 0, "FILE",
+         "that `train` left: its networks draw the views", false},
         {"views", HS_INTEGER, &r.views, 4, 3600, "N", "simulated, evenly around", false},
         {"shift", HS_INTEGER, &r.reach_px, 0, 512, "PX",
          "how far from the middle of its chip a target may be", false},
         {"in-order", HS_FLAG, &r.is_in_order, 0, 0, NULL,
          "the chips follow one another as they were taken, on circles about the target", false},
     };
-    nm_target_options(&r.settings, options + 5);
-    nm_chip_options(&r.settings, options + 5 + NM_TARGET_OPTIONS);
+    nm_target_options(&r.settings, options + 7);
+    nm_chip_options(&r.settings, options + 7 + NM_TARGET_OPTIONS);
     if (!hs_options_read(&usage, options, OPTIONS, argc, argv, &exit_code)) {
         return exit_code;
     }

@@ -23,15 +23,14 @@ enum { OWN_OPTIONS = NM_VIEW_OPTIONS + NM_LAW_OPTIONS };
 enum { OPTIONS = OWN_OPTIONS + NM_CHIP_OPTIONS + 5 };
 
 static int beside(struct nm_experiment *e, const struct nm_samples *samples, const char *path,
-                  const struct nm_summary *summary, bool *is_first, bool *is_first_by_mse)
+                  const struct nm_summary *summary, struct nm_first *firsts)
 {
     struct nm_chip_list list;
     struct nm_vehicle v = {.name = path};
     if (nm_chip_list_read(&list, path) != 0) {
         return -1;
     }
-    const int result =
-        nm_experiment_beside(e, samples, &list, summary, &v, is_first, is_first_by_mse);
+    const int result = nm_experiment_beside(e, samples, &list, summary, &v, firsts);
     nm_chip_list_free(&list);
     if (result == 0) {
         printf("  other vehicle, %s, %d chips: mse %.6f   cw-ssim %.4f, at the best gain %.4f\n",
@@ -47,34 +46,48 @@ static int beside(struct nm_experiment *e, const struct nm_samples *samples, con
     return result;
 }
 
+/* How many chips came first, in all four ways, printed and reported. */
+static void print_firsts(const struct nm_first *firsts, int count)
+{
+    int by_cw_ssim = 0, by_mse = 0, null_by_cw_ssim = 0, null_by_mse = 0;
+    for (int i = 0; i < count; i++) {
+        by_cw_ssim += firsts[i].by_cw_ssim;
+        by_mse += firsts[i].by_mse;
+        null_by_cw_ssim += firsts[i].null_by_cw_ssim;
+        null_by_mse += firsts[i].null_by_mse;
+    }
+    printf(
+        "  fitted better than the others' chips of the nearest azimuths: %d of %d by "
+        "cw-ssim at the best gain, %d by mse\n",
+        by_cw_ssim, count, by_mse);
+    printf("  null model, nearest chip in the simulator's place: %d by cw-ssim, %d by mse\n",
+           null_by_cw_ssim, null_by_mse);
+    hs_report_integer("first_by_cw_ssim", by_cw_ssim);
+    hs_report_integer("first_by_mse", by_mse);
+    hs_report_integer("null_first_by_cw_ssim", null_by_cw_ssim);
+    hs_report_integer("null_first_by_mse", null_by_mse);
+}
+
 static int beside_all(struct nm_experiment *e, const struct nm_samples *samples,
                       const struct hs_list *others, const struct nm_summary *summary)
 {
-    int result = 0, first = 0, first_by_mse = 0;
-    bool *is_first = malloc(2 * ((size_t)samples->count + 1) * sizeof *is_first);
-    if (!is_first) {
+    int result = 0;
+    struct nm_first *firsts = malloc(((size_t)samples->count + 1) * sizeof *firsts);
+    if (!firsts) {
         return hs_error("scores", NULL, "out of memory");
     }
-    bool *is_first_by_mse = is_first + samples->count;
-    memset(is_first, true, 2 * (size_t)samples->count * sizeof *is_first);
+    for (int i = 0; i < samples->count; i++) {
+        firsts[i] = (struct nm_first){true, true, true, true};
+    }
     hs_report_array("others");
     for (int i = 0; i < others->count && result == 0; i++) {
-        result = beside(e, samples, others->items[i], summary, is_first, is_first_by_mse);
+        result = beside(e, samples, others->items[i], summary, firsts);
     }
     hs_report_close();
-    for (int i = 0; i < samples->count; i++) {
-        first += is_first[i];
-        first_by_mse += is_first_by_mse[i];
-    }
-    free(is_first);
     if (result == 0) {
-        printf(
-            "  fitted better than the others' chips of the nearest azimuths: %d of %d by "
-            "cw-ssim at the best gain, %d by mse\n",
-            first, samples->count, first_by_mse);
-        hs_report_integer("first_by_cw_ssim", first);
-        hs_report_integer("first_by_mse", first_by_mse);
+        print_firsts(firsts, samples->count);
     }
+    free(firsts);
     return result;
 }
 

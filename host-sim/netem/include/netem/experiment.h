@@ -62,13 +62,20 @@ struct nm_vehicle {
     struct nm_fit fit; /* mean */
 };
 
+/* Whether a picture of a chip's aspect fits that chip better than any other vehicle's chip: the
+ * learned picture at the best gain, and as a null model the training chip of the nearest other
+ * azimuth. */
+struct nm_first {
+    bool by_cw_ssim, by_mse, null_by_cw_ssim, null_by_mse;
+};
+
 /* Score another vehicle's chips, whose aspects are known (`register` finds those that this model
- * fits best), at the best gain of `summary`. Each of `chips` stays first in is_first[i] as long as
- * its own simulated picture fits it better, by CW-SSIM at that gain, than the other vehicle's chip
- * of the nearest azimuth; likewise is_first_by_mse. Returns 0, or -1 reported. */
+ * fits best), at the best gain of `summary`. Each of `chips` stays first in `firsts` as long as its
+ * picture fits it better than the other vehicle's chip of the nearest azimuth. Returns 0, or -1
+ * reported. */
 int nm_experiment_beside(struct nm_experiment *e, const struct nm_samples *chips,
                          const struct nm_chip_list *others, const struct nm_summary *summary,
-                         struct nm_vehicle *vehicle, bool *is_first, bool *is_first_by_mse);
+                         struct nm_vehicle *vehicle, struct nm_first *firsts);
 
 /* Print the summary, and report it as the object "score" (hs/report.h). */
 void nm_summary_print(const struct nm_summary *summary, const char *what);

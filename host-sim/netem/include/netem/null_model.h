@@ -28,8 +28,12 @@ struct nm_fit {
     double mse, cw_ssim, best_cw_ssim; /* the last with all amplitudes times the best gain */
 };
 
-/* The learned picture of `aspect`, in t->simulator.pixels, beside the chip of `sample`. Returns 0,
- * or -1 out of memory, reported. */
+/* A picture of the simulator's size beside the chip of `sample`, registered. Returns 0, or -1 out
+ * of memory, reported. */
+int nm_fit_picture(struct nm_training *t, const double *picture, const struct nm_sample *sample,
+                   double best_gain, struct nm_fit *fit);
+
+/* The same with the learned picture of `aspect`, in t->simulator.pixels. */
 int nm_fit_chip(struct nm_training *t, const struct nm_sample *aspect,
                 const struct nm_sample *sample, double best_gain, struct nm_fit *fit);
 

@@ -162,6 +162,7 @@ TEST(other_vehicles_are_scored_beside)
         support_run("python3 -c 'import json, sys\n"
                     "r = json.load(open(sys.argv[1]))[\"report\"]\n"
                     "print(r)\n"
+                    "assert 0 <= r[\"null_first_by_cw_ssim\"] <= 3\n"
                     "assert len(r[\"others\"]) == 1 and r[\"others\"][0][\"mse\"] < 1e-9\n"
                     "assert r[\"others\"][0][\"chips\"] == 3' %s/beside.json",
                     folder),
@@ -247,6 +248,13 @@ TEST(real_chips_go_all_the_way)
                                  b, folder, folder),
                      0);
     assert_int_equal(support_run("test $(grep -vc '^#' %s/list.tsv) = 6", folder), 0);
+    assert_int_equal(
+        support_run("%s/bin/landmass-netem register --model tank --cells 120 --rays 1 "
+                    "--views 24 --chips %s/chips --turned --out %s/turned.tsv && paste "
+                    "%s/list.tsv %s/turned.tsv | awk '!/^#/ && ($2 + 180) %% 360 != "
+                    "$9 { exit 1 }'",
+                    b, folder, folder, folder, folder),
+        0);
     assert_int_equal(support_run("%s/bin/landmass-netem train --model tank --cells 120 --rays 1 "
                                  "--chips %s/list.tsv --share 0.5 --epochs 2 --pix-epochs 1 "
                                  "--out %s/t72",
@@ -258,6 +266,33 @@ TEST(real_chips_go_all_the_way)
                                  b, folder, folder, folder),
                      0);
     assert_int_equal(support_run("test $(wc -l < %s/scored/scores.tsv) = 4", folder), 0);
+    assert_int_equal(support_run("%s/bin/landmass-netem register --model tank --cells 120 --rays 1 "
+                                 "--views 24 --training %s/t72/training.netem --chips %s/chips "
+                                 "--out %s/again.tsv",
+                                 b, folder, folder, folder),
+                     0);
+    assert_int_equal(support_run("test $(grep -vc '^#' %s/again.tsv) = 6", folder), 0);
+}
+
+/* In zones, a training knows each zone's material, and says so to who forgets them. */
+TEST(zones_are_learned_each_by_itself)
+{
+    const char *b = support_build_dir();
+    assert_int_equal(
+        support_run("%s/bin/landmass-netem recover --architecture EP9 --zones 2 --model slicy "
+                    "--cells 64 --rays 1 --number 6 --epochs 2 --pix-epochs 1 --out %s/zones && "
+                    "grep -q '^materials .*metal.211' %s/zones/training.netem",
+                    b, folder, folder),
+        0);
+    assert_int_equal(support_run("%s/bin/landmass-netem simulate --zones 2 --model slicy --cells "
+                                 "64 --rays 1 --training %s/zones/training.netem --azimuth 10 "
+                                 "--out %s/zoned",
+                                 b, folder, folder),
+                     0);
+    assert_int_equal(support_run("%s/bin/landmass-netem simulate --model slicy --cells 64 --rays 1 "
+                                 "--training %s/zones/training.netem --azimuth 10 --out %s/none",
+                                 b, folder, folder),
+                     1);
 }
 
 /* The simulated response lies on the real ones within a twentieth of the peak, and one look is one
