@@ -116,15 +116,39 @@ static int visit_real(struct nm_training *t, const struct nm_sample *sample, enu
     return 0;
 }
 
+/* The large kernel's values change in proportion to what the radar's response is there. Adam moves
+ * all alike, and most of the kernel's are far out and nearly nothing: they would learn what stands
+ * about each bright point of all the chips, which is the target. */
+static void hold_back_far_values(struct nm_model *m, const double *before)
+{
+    double *large = nm_model_pix(m, m->values)->large;
+    const double peak = fabs(m->kernel[NM_LARGE * NM_LARGE / 2]);
+    for (int i = 0; i < NM_LARGE * NM_LARGE; i++) {
+        const double pace = peak > 0 ? fmin(fabs(m->kernel[i]) / peak, 1) : 1;
+        large[i] = before[i] + pace * (large[i] - before[i]);
+    }
+}
+
+static void change_pixels(struct nm_training *t)
+{
+    double before[NM_LARGE * NM_LARGE];
+    memcpy(before, nm_model_pix(&t->model, t->model.values)->large, sizeof before);
+    nm_optimizer_step(&t->optimizer, t->model.values, t->gradient,
+                      nm_architecture_size(t->model.architecture), NM_PIX_SIZE);
+    hold_back_far_values(&t->model, before);
+}
+
 static void change_values(struct nm_training *t, enum nm_phase phase, int visited)
 {
     const size_t weights = nm_architecture_size(t->model.architecture);
-    const size_t first = phase == NM_PIXELS ? weights : 0;
-    const size_t count = phase == NM_PIXELS ? NM_PIX_SIZE : weights;
-    for (size_t i = first; i < first + count; i++) {
+    for (size_t i = 0; i < t->model.size; i++) {
         t->gradient[i] /= visited;
     }
-    nm_optimizer_step(&t->optimizer, t->model.values, t->gradient, first, count);
+    if (phase == NM_PIXELS) {
+        change_pixels(t);
+    } else {
+        nm_optimizer_step(&t->optimizer, t->model.values, t->gradient, 0, weights);
+    }
     memset(t->gradient, 0, t->model.size * sizeof *t->gradient);
 }
 

@@ -183,7 +183,8 @@ TEST(the_phases_follow_the_plan_and_the_pixels_come_last)
     double *kept = malloc(weights * sizeof *kept);
     run(&w, w.training, 7);
     memcpy(kept, w.training->model.values, weights * sizeof *kept);
-    const double before = nm_model_pix(&w.training->model, w.training->model.values)->large[0];
+    const int middle = NM_LARGE * NM_LARGE / 2;
+    const double before = nm_model_pix(&w.training->model, w.training->model.values)->large[middle];
     run(&w, w.training, 1);
     assert_int_equal(w.training->optimizer.steps, TRAINING / plan.batch); /* averages begin anew */
     run(&w, w.training, 10);
@@ -192,9 +193,30 @@ TEST(the_phases_follow_the_plan_and_the_pixels_come_last)
         assert_int_equal(w.training->epochs[i].phase, i < 5 ? 0 : i < 7 ? 1 : 2);
     }
     assert_memory_equal(kept, w.training->model.values, weights * sizeof *kept);
-    assert_true(before != nm_model_pix(&w.training->model, w.training->model.values)->large[0]);
+    assert_true(before !=
+                nm_model_pix(&w.training->model, w.training->model.values)->large[middle]);
     assert_true(w.training->epochs[9].validation < w.training->epochs[6].validation);
     free(kept);
+    close_world(&w);
+}
+
+/* A kernel free to change everywhere learns the target, which stands about each bright point. No
+ * value may move by more than Adam's longest steps in proportion to the response there. */
+TEST(the_kernel_learns_nothing_where_the_radar_has_no_response)
+{
+    struct world w;
+    struct nm_plan plan = short_plan;
+    plan.epochs[NM_REAL_CHIPS] = 1;
+    plan.epochs[NM_PIXELS] = 4;
+    open_world(&w, &plan, "EP8", 4);
+    run(&w, w.training, 10);
+    const double *learned = nm_model_pix(&w.training->model, w.training->model.values)->large;
+    const double most = 4 * plan.pix_rate * (double)w.training->optimizer.steps;
+    const double peak = w.kernel[NM_LARGE * NM_LARGE / 2];
+    assert_true(fabs(learned[NM_LARGE * NM_LARGE / 2] - peak) > plan.pix_rate);
+    for (int i = 0; i < NM_LARGE * NM_LARGE; i++) {
+        assert_true(fabs(learned[i] - w.kernel[i]) <= most * w.kernel[i] / peak + 1e-15);
+    }
     close_world(&w);
 }
 
