@@ -32,3 +32,7 @@ world-flights: $(WORLD_FLIGHTS) ## Fly round the Earth over WORLD=FILE.lmdb: til
 .PHONY: soak
 soak: $(SOAK) ## Two displays for an hour on a bus that is never idle: nothing may be lost (SOAK_S=3600)
 	@$(SOAK) $(SOAK_S)
+NETEM_PEER := $(O)/bin/tests/bench/netem_peer
+PROGRAMS += $(NETEM_PEER)
+$(NETEM_PEER): $(O)/tests/bench/netem_peer.o $(call host_archives,netem tracer visual gis lib fixed firmware)
+$(NETEM_PEER): LDLIBS := $(call host_links,netem)
