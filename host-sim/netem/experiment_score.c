@@ -6,6 +6,7 @@
 #include "netem/experiment.h"
 #include "netem/null_model.h"
 #include "netem/report.h"
+#include "tracer/pix.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -14,7 +15,7 @@
 
 /* REAL twice: below the own law's picture and below the learned one, which may lie elsewhere. */
 enum { OWN_REAL, OWN, LEARNED_REAL, LEARNED, KINDS };
-enum { SHOWN = 8, SQUARE_GAINS = 41, BEST_GAINS = 17, FITTED_MAX = 24 };
+enum { SHOWN = 8, SHEETS = 3, SQUARE_GAINS = 41, BEST_GAINS = 17, FITTED_MAX = 24 };
 
 /* What both simulators show of some chips, registered; amplitudes through tanh. */
 struct shown {
@@ -166,6 +167,11 @@ struct scored {
     double learned_best, own_best, azimuth_deg;
 };
 
+struct place_in_circle {
+    double azimuth_deg;
+    int chip;
+};
+
 static void add(struct nm_score *sum, const struct nm_score *score, int count)
 {
     sum->mse += score->mse / count;
@@ -225,6 +231,83 @@ static int write_scores(const struct scored *scored, const struct nm_samples *sa
     return hs_atomic_commit(&file);
 }
 
+static int by_azimuth(const void *a, const void *b)
+{
+    const struct place_in_circle *p = a, *q = b;
+    return (p->azimuth_deg > q->azimuth_deg) - (p->azimuth_deg < q->azimuth_deg);
+}
+
+/* Each simulated picture of `which` with the speckle of one look, at the gain that suits it best:
+ * as a real chip has it. `speckled` has room for all of them. */
+static void speckle_all(const struct shown *s, const int *which, int count, double gain,
+                        double *speckled)
+{
+    struct hs_rng rng;
+    const int pixels = s->side * s->side;
+    hs_rng_seed(&rng, 1);
+    for (int k = 0; k < count; k++) {
+        nm_brighten(square_of(s, which[k], LEARNED), pixels, gain, speckled + k * pixels);
+        for (int i = k * pixels; i < (k + 1) * pixels; i++) {
+            float power = 1;
+            pix_speckle(&power, 1, 1, &rng);
+            speckled[i] = tanh(sqrt((double)power) * atanh(fmin(speckled[i], 1 - 1e-12)));
+        }
+    }
+}
+
+static int draw_sheet(const struct shown *s, const struct scored *scored, const int *which,
+                      int count, double gain, const char *path)
+{
+    enum { ROWS = 3 };
+    const double *pictures[SHOWN * ROWS];
+    static const char *const titles[ROWS] = {"real chip", "learned, 1 look", "learned"};
+    char text[SHOWN][16];
+    const char *names[SHOWN];
+    double *speckled = malloc((size_t)count * (size_t)(s->side * s->side) * sizeof *speckled);
+    if (!speckled) {
+        return hs_error(path, NULL, "out of memory");
+    }
+    speckle_all(s, which, count, gain, speckled);
+    for (int k = 0; k < count; k++) {
+        snprintf(text[k], sizeof text[k], "%.0f deg", scored[which[k]].azimuth_deg);
+        names[k] = text[k];
+        pictures[k * ROWS] = square_of(s, which[k], LEARNED_REAL);
+        pictures[k * ROWS + 1] = speckled + k * s->side * s->side;
+        pictures[k * ROWS + 2] = square_of(s, which[k], LEARNED);
+    }
+    const int result = nm_report_table(path, pictures, count, ROWS, s->side, titles, names);
+    free(speckled);
+    return result;
+}
+
+/* SHEETS sheets of up to SHOWN chips each, from all around in order of azimuth. */
+static int draw_sheets(const struct shown *s, const struct scored *scored, double gain,
+                       const char *folder)
+{
+    struct place_in_circle *order = malloc(((size_t)s->count + 1) * sizeof *order);
+    const int count = s->count < SHEETS * SHOWN ? s->count : SHEETS * SHOWN;
+    int which[SHEETS * SHOWN], result = order ? 0 : hs_error(folder, NULL, "out of memory");
+    for (int i = 0; i < s->count && result == 0; i++) {
+        order[i] = (struct place_in_circle){scored[i].azimuth_deg, i};
+    }
+    if (result == 0) {
+        qsort(order, (size_t)s->count, sizeof *order, by_azimuth);
+    }
+    for (int k = 0; k < count && result == 0; k++) {
+        which[k] = order[k * s->count / count].chip;
+    }
+    free(order);
+    for (int k = 0; k < count && result == 0; k += SHOWN) {
+        char name[16], path[4096];
+        snprintf(name, sizeof name, "sheet-%d.png", k / SHOWN + 1);
+        result = hs_output_path(path, sizeof path, folder, name) == 0
+                     ? draw_sheet(s, scored, which + k, count - k < SHOWN ? count - k : SHOWN, gain,
+                                  path)
+                     : -1;
+    }
+    return result;
+}
+
 static int draw_table(const struct shown *s, const struct scored *scored, const char *path)
 {
     enum { ROWS = 3 };
@@ -265,7 +348,7 @@ static int draw_curves(const struct scored *scored, int count, const char *path)
 }
 
 static int report(const struct shown *s, const struct scored *scored,
-                  const struct nm_samples *samples, const char *folder)
+                  const struct nm_samples *samples, double gain, const char *folder)
 {
     char table[4096], curves[4096], scores[4096];
     if (hs_output_path(table, sizeof table, folder, "table.png") != 0 ||
@@ -274,7 +357,8 @@ static int report(const struct shown *s, const struct scored *scored,
         return -1;
     }
     return draw_table(s, scored, table) == 0 && draw_curves(scored, s->count, curves) == 0 &&
-                   write_scores(scored, samples, scores) == 0
+                   write_scores(scored, samples, scores) == 0 &&
+                   draw_sheets(s, scored, gain, folder) == 0
                ? 0
                : -1;
 }
@@ -316,7 +400,7 @@ int nm_experiment_score(struct nm_experiment *e, const struct nm_samples *sample
     }
     if (result == 0) {
         result = score_all(&s, samples, summary, scratch, scored) == 0
-                     ? report(&s, scored, samples, folder)
+                     ? report(&s, scored, samples, summary->learned_best_gain, folder)
                      : -1;
         free(s.pixels);
     }

@@ -50,8 +50,9 @@ struct nm_summary {
 };
 
 /* Score the chips `samples` by the learned simulator and by its own law, both registered:
- * scores.tsv, cw-ssim.png (at the best gains) and table.png in the folder. All gains are fitted on
- * the training chips. Returns 0, or -1 reported. */
+ * scores.tsv, cw-ssim.png (at the best gains), table.png and sheet-1.png to sheet-3.png in the
+ * folder: simulated chips beside real ones, in order of azimuth. All gains are fitted on the
+ * training chips. Returns 0, or -1 reported. */
 int nm_experiment_score(struct nm_experiment *e, const struct nm_samples *samples,
                         const char *folder, struct nm_summary *summary);
 
