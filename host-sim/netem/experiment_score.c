@@ -6,6 +6,7 @@
 #include "netem/experiment.h"
 #include "netem/null_model.h"
 #include "netem/report.h"
+#include "netem/speckle.h"
 #include "tracer/pix.h"
 
 #include <math.h>
@@ -19,8 +20,8 @@ enum { SHOWN = 8, SHEETS = 3, SQUARE_GAINS = 41, BEST_GAINS = 17, FITTED_MAX = 2
 
 /* What both simulators show of some chips, registered; amplitudes through tanh. */
 struct shown {
-    int count, side;
-    double *pixels; /* owned: KINDS squares for each chip */
+    int count, side, aperture; /* the last of the radar's response, in pixels (tracer/pix.h) */
+    double *pixels;            /* owned: KINDS squares for each chip */
 };
 
 static double *square_of(const struct shown *s, int chip, int kind)
@@ -125,7 +126,7 @@ static int show_all(struct nm_training *t, const struct nm_samples *samples, int
 {
     const int side = t->simulator.side_px, count = samples->count < most ? samples->count : most;
     *s = (struct shown){
-        count, side,
+        count, side, 0,
         malloc(((size_t)count * KINDS * (size_t)(side * side) + 1) * sizeof *s->pixels)};
     int result = s->pixels ? 0 : hs_error("scores", "take fewer chips", "out of memory");
     for (int i = 0; i < count && result == 0; i++) {
@@ -239,20 +240,18 @@ static int by_azimuth(const void *a, const void *b)
 
 /* Each simulated picture of `which` with the speckle of one look, at the gain that suits it best:
  * as a real chip has it. `speckled` has room for all of them. */
-static void speckle_all(const struct shown *s, const int *which, int count, double gain,
-                        double *speckled)
+static int speckle_all(const struct shown *s, const int *which, int count, double gain,
+                       double *speckled)
 {
     struct hs_rng rng;
     const int pixels = s->side * s->side;
+    int result = 0;
     hs_rng_seed(&rng, 1);
-    for (int k = 0; k < count; k++) {
+    for (int k = 0; k < count && result == 0; k++) {
         nm_brighten(square_of(s, which[k], LEARNED), pixels, gain, speckled + k * pixels);
-        for (int i = k * pixels; i < (k + 1) * pixels; i++) {
-            float power = 1;
-            pix_speckle(&power, 1, 1, &rng);
-            speckled[i] = tanh(sqrt((double)power) * atanh(fmin(speckled[i], 1 - 1e-12)));
-        }
+        result = nm_speckle(speckled + k * pixels, s->side, s->aperture, 1, &rng);
     }
+    return result;
 }
 
 static int draw_sheet(const struct shown *s, const struct scored *scored, const int *which,
@@ -260,14 +259,14 @@ static int draw_sheet(const struct shown *s, const struct scored *scored, const 
 {
     enum { ROWS = 3 };
     const double *pictures[SHOWN * ROWS];
-    static const char *const titles[ROWS] = {"real chip", "learned, 1 look", "learned"};
+    static const char *const titles[ROWS] = {"real chip", "with speckle", "learned"};
     char text[SHOWN][16];
     const char *names[SHOWN];
     double *speckled = malloc((size_t)count * (size_t)(s->side * s->side) * sizeof *speckled);
     if (!speckled) {
         return hs_error(path, NULL, "out of memory");
     }
-    speckle_all(s, which, count, gain, speckled);
+    int result = speckle_all(s, which, count, gain, speckled);
     for (int k = 0; k < count; k++) {
         snprintf(text[k], sizeof text[k], "%.0f deg", scored[which[k]].azimuth_deg);
         names[k] = text[k];
@@ -275,7 +274,8 @@ static int draw_sheet(const struct shown *s, const struct scored *scored, const 
         pictures[k * ROWS + 1] = speckled + k * s->side * s->side;
         pictures[k * ROWS + 2] = square_of(s, which[k], LEARNED);
     }
-    const int result = nm_report_table(path, pictures, count, ROWS, s->side, titles, names);
+    result =
+        result == 0 ? nm_report_table(path, pictures, count, ROWS, s->side, titles, names) : -1;
     free(speckled);
     return result;
 }
@@ -399,6 +399,8 @@ int nm_experiment_score(struct nm_experiment *e, const struct nm_samples *sample
         result = show_all(e->training, samples, samples->count, summary->own_gain, &s);
     }
     if (result == 0) {
+        const struct setup *setup = &e->settings.setup;
+        s.aperture = pix_aperture(setup->resolution_m, NM_CELLS_PER_PIXEL * setup->cell_m);
         result = score_all(&s, samples, summary, scratch, scored) == 0
                      ? report(&s, scored, samples, summary->learned_best_gain, folder)
                      : -1;

@@ -7,6 +7,7 @@
 #include "hs/progress.h"
 #include "netem/experiment.h"
 #include "netem/report.h"
+#include "netem/speckle.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -61,15 +62,6 @@ static int write_csv(const char *path, const double *pixels, int side)
     return hs_atomic_commit(&file);
 }
 
-static void add_speckle(double *pixels, int count, long looks, struct hs_rng *rng)
-{
-    for (int i = 0; i < count; i++) {
-        float power = 1;
-        pix_speckle(&power, 1, (int)looks, rng);
-        pixels[i] = tanh(sqrt((double)power) * atanh(fmin(pixels[i], 1 - 1e-12)));
-    }
-}
-
 static int make_chip(struct nm_experiment *e, const struct order *o, double azimuth_deg,
                      struct hs_rng *rng)
 {
@@ -82,8 +74,11 @@ static int make_chip(struct nm_experiment *e, const struct order *o, double azim
     }
     int result = nm_simulate(s, &e->training->model, &paths);
     nm_paths_free(&paths);
-    if (o->looks > 0) {
-        add_speckle(s->pixels, s->side_px * s->side_px, o->looks, rng);
+    if (result == 0 && o->looks > 0) {
+        const struct setup *setup = &e->settings.setup;
+        result = nm_speckle(s->pixels, s->side_px,
+                            pix_aperture(setup->resolution_m, NM_CELLS_PER_PIXEL * setup->cell_m),
+                            (int)o->looks, rng);
     }
     snprintf(name, sizeof name, "%06.2f.csv", azimuth_deg);
     result = result == 0 ? hs_output_path(csv, sizeof csv, o->out, name) : -1;

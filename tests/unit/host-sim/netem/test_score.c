@@ -2,8 +2,11 @@
 #include "check.h"
 #include "hs/rng.h"
 #include "netem/score.h"
+#include "netem/speckle.h"
+#include "tracer/pix.h"
 
 #include <math.h>
+#include <stdlib.h>
 
 enum { LARGEST = 128 };
 
@@ -96,4 +99,41 @@ TEST(cw_ssim_sees_contrast_as_its_formula_says)
     double score;
     assert_int_equal(nm_score_cw_ssim(a, b, 64, &score), 0);
     assert_true(fabs(score - 2 * 0.5 / 1.25) < 1e-9);
+}
+
+/* Power of one look is exponential, and that of neighbours goes together as the square of the
+ * response's autocorrelation: fields are Gaussian. */
+TEST(speckle_has_the_grain_of_the_response)
+{
+    enum { SIDE_PX = 256, APERTURE = 84 };
+    double line[PIX_KERNEL_SIDE], energy = 0, lag = 0, sum = 0, square = 0, along = 0, up = 0;
+    struct hs_rng rng;
+    double *pixels = malloc(SIDE_PX * SIDE_PX * sizeof *pixels);
+    hs_rng_seed(&rng, 4);
+    pix_taylor(APERTURE, line);
+    for (int i = 0; i < PIX_KERNEL_SIDE; i++) {
+        energy += line[i] * line[i];
+        lag += i > 0 ? line[i] * line[i - 1] : 0;
+    }
+    for (int i = 0; i < SIDE_PX * SIDE_PX; i++) {
+        pixels[i] = 1e-3;
+    }
+    assert_int_equal(nm_speckle(pixels, SIDE_PX, APERTURE, 1, &rng), 0);
+    for (int i = 0; i < SIDE_PX * SIDE_PX; i++) {
+        pixels[i] = pixels[i] * pixels[i] / 1e-6;
+        sum += pixels[i] / (SIDE_PX * SIDE_PX);
+    }
+    for (int i = 0; i < SIDE_PX * (SIDE_PX - 1) - 1; i++) {
+        const double p = pixels[i] - sum;
+        square += p * p;
+        along += p * (pixels[i + 1] - sum);
+        up += p * (pixels[i + SIDE_PX] - sum);
+    }
+    const double expected = lag / energy * (lag / energy);
+    assert_true(expected > 0.1);
+    assert_true(fabs(sum - 1) < 0.02);
+    assert_true(fabs(sqrt(square / (SIDE_PX * (SIDE_PX - 1) - 1)) / sum - 1) < 0.03);
+    assert_true(fabs(along / square - expected) < 0.03);
+    assert_true(fabs(up / square - expected) < 0.03);
+    free(pixels);
 }
