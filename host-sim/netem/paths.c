@@ -63,12 +63,12 @@ static int32_t table_find(struct table *t, const struct nm_reflection *r)
 }
 
 /* The angle between the normal and the bisector of the way in and the way out: both ways have
- * length 1, so their sum has 2 cos(turn / 2). */
+ * length 1, so their sum has 2 cos(turn / 2). 0 where they oppose each other: a mirror, grazed. */
 static double bisector_rad(const struct nm_reflection *r)
 {
     const double both = 2 * cos(r->turn_rad / 2);
     const double along = cos(r->incidence_rad) + cos(r->leaving_rad);
-    return both > 1e-9 ? acos(fmax(fmin(along / both, 1), -1)) : pi / 2;
+    return both > 1e-9 ? acos(fmax(fmin(along / both, 1), -1)) : 0;
 }
 
 void nm_features_of(const struct nm_architecture *a, const struct nm_reflection *r,
