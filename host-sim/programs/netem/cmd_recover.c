@@ -182,12 +182,12 @@ static void print_errors(const struct nm_experiment *e, const struct hidden *h)
         for (uint32_t m = 0; m < e->view.scene.material_count; m++) {
             hs_report_object(NULL);
             hs_report_put("direction", d == NM_BK ? "back" : "specular");
-            hs_report_put("material", h->truth.materials[m].name);
+            hs_report_put("material", e->view.scene.materials[m]);
             hs_report_put("mean_error", errors[d][m].sum / errors[d][m].weight);
             hs_report_put("reflections", errors[d][m].count);
             hs_report_close();
             printf("mean error of the law, %s, %s: %.4f over %ld reflections never shown\n",
-                   d == NM_BK ? "back" : "specular", h->truth.materials[m].name,
+                   d == NM_BK ? "back" : "specular", e->view.scene.materials[m],
                    errors[d][m].sum / errors[d][m].weight, errors[d][m].count);
         }
     }
