@@ -22,12 +22,12 @@ struct fixture {
     struct lm_line line;
     struct lm_tone tone;
     uint32_t cell_mm; /* of the patch: CELL_MM unless a test wants others */
-    int32_t bare[SIDE][SIDE], picture[SIDE][SIDE];
+    int16_t bare[SIDE][SIDE], picture[SIDE][SIDE];
 };
 
 /* Levels of a patch around 46 N 11 E, seen from the west. */
 static void draw_patch(struct fixture *f, const struct lm_target_set *set,
-                       int32_t picture[SIDE][SIDE])
+                       int16_t picture[SIDE][SIDE])
 {
     const struct lm_sar_command command = {.centre = {hs_bam(46), hs_bam(11)},
                                            .range_m = (uint32_t)range_m,
