@@ -6,8 +6,7 @@
 #include <stdint.h>
 
 /* Level of a cell in shadow, which has no echo: -128 dB. Lines of levels are held in 16 bits, of
- * which this is the lowest number: what is darker counts as shadow, what is above 128 dB as that.
- * (docs/EQUATIONS.md, "Level", has the highest and the lowest that a picture can ask for.) */
+ * which this is the lowest number: what is darker counts as shadow, what is above 128 dB as that. */
 enum { LM_LEVEL_SHADOW = INT16_MIN };
 
 #endif
