@@ -69,15 +69,16 @@ struct ref_place ref_patch_offset(struct ref_place centre, double azimuth_deg, d
                           hypot(across_m, along_m));
 }
 
-struct ref_surface ref_sar_surface(const struct ref_sar *sar)
+struct ref_surface ref_sar_surface(const struct ref_sar *sar, struct ref_overscan overscan)
 {
     const double half_m = sar->cell_count * sar->cell_m / 2;
-    const double near_m = -half_m - REF_GUARD_CELLS * sar->cell_m;
+    const double near_m = -half_m - (REF_GUARD_CELLS + overscan.before) * sar->cell_m;
+    const double far_m = half_m + overscan.behind * sar->cell_m;
     struct ref_surface s = {
-        .near_m = near_m, .far_m = half_m, .side_m = ref_sar_lines(sar) * sar->cell_m / 2};
+        .near_m = near_m, .far_m = far_m, .side_m = ref_sar_lines(sar) * sar->cell_m / 2};
     for (int i = 0; i < 3; i++) {
         for (int j = 0; j < 3; j++) {
-            const double along_m = near_m + (half_m - near_m) * j / 2;
+            const double along_m = near_m + (far_m - near_m) * j / 2;
             const double across_m = (i - 1) * s.side_m * (sar->range_m + along_m) / sar->range_m;
             const struct ref_place p =
                 ref_patch_offset(sar->centre, sar->azimuth_deg, across_m, along_m);

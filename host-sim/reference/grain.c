@@ -141,10 +141,11 @@ static void lay_over(struct ref_bin *bins, size_t count, const struct ref_lean *
     }
 }
 
-void ref_patch_echo(struct ref_bin *bins, size_t count, size_t guard,
+void ref_patch_echo(struct ref_bin *bins, const struct ref_patch_line *cells,
                     const double table_db[REF_GRAIN_VALUES], const struct ref_params *params,
                     struct ref_leak *leak, unsigned line)
 {
+    const size_t count = cells->count;
     for (size_t i = 0; i < count; i++) {
         const double level_db = bins[i].level_db + bins[i].class_gain_db;
         bins[i].ground = bins[i].is_lit ? pow(10, level_db / 10) : 0;
@@ -153,7 +154,7 @@ void ref_patch_echo(struct ref_bin *bins, size_t count, size_t guard,
     for (size_t i = 0; i < count; i++) {
         bins[i].ground *= pow(10, -bins[i].loss_db / 10);
     }
-    const double left = ref_leak(leak, params, line, bins + guard, count - guard);
+    const double left = ref_leak(leak, params, line, bins + cells->first, cells->shown);
     const double floor = pow(10, params->noise_floor_db / 10) + left;
     leak->shadow_db = 10 * log10(floor);
     for (size_t i = 0; i < count; i++) {

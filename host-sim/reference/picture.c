@@ -68,9 +68,17 @@ double ref_gm_azimuth_deg(const struct ref_gm *gm, unsigned line)
     return gm->centre_azimuth_deg + gm->half_angle_deg * ((2.0 * line + 1) / gm->line_count - 1);
 }
 
+/* The bins of a line. */
+static struct ref_patch_line line_of(const struct ref_picture *picture)
+{
+    const size_t first = (size_t)picture->overscan.before + picture->guard_count;
+    const size_t shown = picture->cell_count;
+    return (struct ref_patch_line){first + shown + picture->overscan.behind, first, shown};
+}
+
 int ref_picture_allocate(struct ref_picture *picture)
 {
-    const size_t bins = (size_t)picture->cell_count + picture->guard_count;
+    const size_t bins = line_of(picture).count;
     picture->bins = calloc(picture->line_count * bins, sizeof *picture->bins);
     picture->start_horizons = calloc(picture->line_count, sizeof *picture->start_horizons);
     if (picture->bins != NULL && picture->start_horizons != NULL) {
@@ -92,8 +100,8 @@ void ref_picture_free(struct ref_picture *picture)
 
 struct ref_bin *ref_picture_bin(const struct ref_picture *picture, unsigned line, int cell)
 {
-    const size_t bins = (size_t)picture->cell_count + picture->guard_count;
-    return picture->bins + line * bins + (size_t)((int)picture->guard_count + cell);
+    const struct ref_patch_line bins = line_of(picture);
+    return picture->bins + line * bins.count + (size_t)((int)bins.first + cell);
 }
 
 int ref_gm_sweep(struct ref_picture *picture, const struct ref_db *db, const struct ref_gm *gm,
@@ -138,10 +146,11 @@ static double sar_along_m(const struct ref_sar *sar, int cell)
 }
 
 double ref_sar_horizon(const struct ref_db *db, const struct ref_sar *sar,
-                       const struct ref_params *params, unsigned line)
+                       const struct ref_params *params, unsigned before, unsigned line)
 {
+    const int first = -REF_GUARD_CELLS - (int)before;
     const double tangent = sar_across_m(sar, line) / sar->range_m;
-    const double end_m = sar->range_m + sar_along_m(sar, -REF_GUARD_CELLS) - sar->cell_m / 2;
+    const double end_m = sar->range_m + sar_along_m(sar, first) - sar->cell_m / 2;
     const double start_m = end_m / 16, cell_m = (end_m - start_m) / REF_COARSE_CELLS;
     struct ref_path path;
     for (int i = 0; i < 3; i++) {
@@ -160,27 +169,38 @@ double ref_sar_horizon(const struct ref_db *db, const struct ref_sar *sar,
     return ref_highest_tangent(bins, REF_COARSE_CELLS, sar->antenna_m);
 }
 
+/* First cell that is traced, and the one behind the last. */
+static int first_cell(const struct ref_picture *picture)
+{
+    return -(int)(picture->guard_count + picture->overscan.before);
+}
+
+static int end_cell(const struct ref_picture *picture)
+{
+    return (int)(picture->cell_count + picture->overscan.behind);
+}
+
 static void sar_line(const struct ref_picture *picture, const struct ref_db *db,
                      const struct ref_sar *sar, const struct ref_params *params,
                      const struct ref_surface *surface, unsigned line)
 {
-    for (int i = -REF_GUARD_CELLS; i < (int)sar->cell_count; i++) {
+    const int first = first_cell(picture), end = end_cell(picture);
+    for (int i = first; i < end; i++) {
         struct ref_bin *bin = ref_picture_bin(picture, line, i);
         const double along_m = sar_along_m(sar, i);
         bin->range_m = sar->range_m + along_m;
         bin->place = ref_surface_at(surface, sar_across_m(sar, line), along_m);
         sample(db, sar->cell_m, params, bin);
     }
-    ref_illuminate(ref_picture_bin(picture, line, -REF_GUARD_CELLS),
-                   REF_GUARD_CELLS + sar->cell_count, &picture->view, params,
-                   picture->start_horizons[line]);
+    ref_illuminate(ref_picture_bin(picture, line, first), (size_t)(end - first), &picture->view,
+                   params, picture->start_horizons[line]);
 }
 
 /* Speckle is drawn for the cells that are shown. */
-static void draw_patch_line(struct ref_bin *bins, const struct ref_sar *sar, unsigned line)
+static void draw_patch_line(struct ref_bin *shown, const struct ref_sar *sar, unsigned line)
 {
-    for (uint32_t i = REF_GUARD_CELLS; i < REF_GUARD_CELLS + sar->cell_count; i++) {
-        bins[i].grain = ref_grain(sar->grain_row + line, sar->grain_column + i - REF_GUARD_CELLS);
+    for (uint32_t i = 0; i < sar->cell_count; i++) {
+        shown[i].grain = ref_grain(sar->grain_row + line, sar->grain_column + i);
     }
 }
 
@@ -205,7 +225,7 @@ static void rain_on_line(const struct ref_picture *picture, const struct ref_sar
                          const struct ref_patch_rain *rain, unsigned line)
 {
     const double aside_deg = atan2(sar_across_m(sar, line), sar->range_m) * 180 / acos(-1.0);
-    for (int i = -REF_GUARD_CELLS; i < (int)sar->cell_count; i++) {
+    for (int i = first_cell(picture); i < end_cell(picture); i++) {
         struct ref_bin *bin = ref_picture_bin(picture, line, i);
         bin->loss_db = ref_patch_loss_db(rain, aside_deg, bin->range_m, sar->cell_m);
         bin->veil = ref_patch_veil(rain, &picture->view, bin->range_m, aside_deg);
@@ -247,7 +267,7 @@ static int add_side_lobes(const struct ref_picture *picture, const struct ref_sa
 static int make_levels(const struct ref_picture *picture, const struct ref_sar *sar,
                        const struct ref_params *params)
 {
-    const size_t count = REF_GUARD_CELLS + sar->cell_count;
+    const struct ref_patch_line cells = line_of(picture);
     struct ref_tables tables;
     struct ref_leak leak = {0};
     double *shadow_db = calloc(picture->line_count, sizeof *shadow_db);
@@ -256,11 +276,11 @@ static int make_levels(const struct ref_picture *picture, const struct ref_sar *
     }
     ref_tables_set(&tables, params);
     for (unsigned line = 0; line < picture->line_count; line++) {
-        struct ref_bin *bins = ref_picture_bin(picture, line, -REF_GUARD_CELLS);
-        draw_patch_line(bins, sar, line);
-        ref_class_gain(bins, count, params, sar->azimuth_deg);
-        ref_sea(bins, count, &picture->view, params, sar->azimuth_deg);
-        ref_patch_echo(bins, count, REF_GUARD_CELLS, tables.grain_db, params, &leak, line);
+        struct ref_bin *bins = ref_picture_bin(picture, line, first_cell(picture));
+        draw_patch_line(bins + cells.first, sar, line);
+        ref_class_gain(bins, cells.count, params, sar->azimuth_deg);
+        ref_sea(bins, cells.count, &picture->view, params, sar->azimuth_deg);
+        ref_patch_echo(bins, &cells, tables.grain_db, params, &leak, line);
         shadow_db[line] = leak.shadow_db;
     }
     const int status = add_side_lobes(picture, sar, params, shadow_db);
@@ -276,27 +296,78 @@ struct ref_lean ref_sar_lean(const struct ref_sar *sar, double reference_m)
     return (struct ref_lean){sar->is_plan ? 0 : grazing / sar->cell_m, reference_m};
 }
 
-int ref_sar_patch(struct ref_picture *picture, const struct ref_db *db, const struct ref_sar *sar,
-                  const struct ref_params *params)
+/* Elevation of the map, or off it the mean of the image's land. */
+static double map_elevation_m(const struct ref_db *db, unsigned level, struct ref_place place,
+                              const struct ref_params *params)
+{
+    double elevation_m;
+    return ref_db_elevation(db, level, place, params->has_exact_weights, &elevation_m)
+               ? elevation_m
+               : db->mean_elevation_m;
+}
+
+/* d(Y) + 2 whole cells, or none. */
+static unsigned overscan_cells(const struct ref_lean *lean, double above_m)
+{
+    const double cells = floor(above_m * lean->cells_m);
+    return cells < 1 ? 0 : (unsigned)fmin(cells + 2, REF_OVERSCAN_MAX);
+}
+
+struct ref_overscan ref_sar_overscan(const struct ref_db *db, const struct ref_sar *sar,
+                                     const struct ref_params *params, double reference_m)
+{
+    enum { ROWS = 3, PLACES = 5 };
+    const unsigned level = ref_db_level_for(db, sar->cell_m);
+    const struct ref_lean lean = ref_sar_lean(sar, reference_m);
+    const double half_m = sar->cell_count * sar->cell_m / 2;
+    double rise_m = 0, fall_m = 0;
+    for (int row = 0; row < ROWS; row++) {
+        const double along_m = half_m * (1 + row / 8.0);
+        for (int place = 0; place < PLACES; place++) {
+            const double across_m = half_m * (place - PLACES / 2) / (PLACES / 2);
+            const struct ref_place far = ref_patch_offset(sar->centre, sar->azimuth_deg, across_m,
+                                                          along_m),
+                                   near = ref_patch_offset(sar->centre, sar->azimuth_deg, across_m,
+                                                           -along_m);
+            rise_m = fmax(rise_m, map_elevation_m(db, level, far, params) - reference_m);
+            fall_m = fmax(fall_m, reference_m - map_elevation_m(db, level, near, params));
+        }
+    }
+    const double room_m = sar->range_m - half_m - REF_GUARD_CELLS * sar->cell_m - REF_TRACED_FROM_M;
+    const double most = fmax(floor(room_m / sar->cell_m), 0);
+    return (struct ref_overscan){(unsigned)fmin(overscan_cells(&lean, fall_m), most),
+                                 overscan_cells(&lean, rise_m)};
+}
+
+/* Geometry of a patch, and room for its cells. */
+static int begin_patch(struct ref_picture *picture, const struct ref_db *db,
+                       const struct ref_sar *sar, const struct ref_params *params)
 {
     *picture = (struct ref_picture){.line_count = ref_sar_lines(sar),
                                     .cell_count = sar->cell_count,
                                     .guard_count = REF_GUARD_CELLS,
                                     .view = {sar->antenna_m, 0, sar->cell_m},
                                     .level = ref_db_level_for(db, sar->cell_m)};
-    if (ref_picture_allocate(picture) != 0) {
+    picture->view.reference_m = map_elevation_m(db, picture->level, sar->centre, params);
+    picture->overscan = ref_sar_overscan(db, sar, params, picture->view.reference_m);
+    return ref_picture_allocate(picture);
+}
+
+int ref_sar_patch(struct ref_picture *picture, const struct ref_db *db, const struct ref_sar *sar,
+                  const struct ref_params *params)
+{
+    if (begin_patch(picture, db, sar, params) != 0) {
         return -1;
     }
-    ref_db_elevation(db, picture->level, sar->centre, params->has_exact_weights,
-                     &picture->view.reference_m);
-    const struct ref_surface surface = ref_sar_surface(sar);
+    const struct ref_surface surface = ref_sar_surface(sar, picture->overscan);
     struct ref_params laid = *params;
     laid.lean = ref_sar_lean(sar, picture->view.reference_m);
     struct hs_progress progress;
     hs_progress_begin(&progress, "lines", picture->line_count);
     for (unsigned line = 0; line < picture->line_count; line++) {
         hs_progress_update(&progress, line);
-        picture->start_horizons[line] = ref_sar_horizon(db, sar, params, line);
+        picture->start_horizons[line] =
+            ref_sar_horizon(db, sar, params, picture->overscan.before, line);
         sar_line(picture, db, sar, params, &surface, line);
     }
     hs_progress_end(&progress);

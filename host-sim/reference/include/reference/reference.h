@@ -18,6 +18,9 @@
 #include <stddef.h>
 #include <stdint.h>
 
+/* A patch's first traced cell does not begin nearer. */
+#define REF_TRACED_FROM_M 4096.0
+
 #define REF_EARTH_M           6371000.0 /* mean radius, EQUATIONS.md */
 #define REF_EFFECTIVE_EARTH_M (4.0 / 3.0 * REF_EARTH_M)
 #define REF_MERIDIAN_M        40007862.9 /* around the Earth through the poles: 2^32 BAM of latitude */
@@ -27,7 +30,8 @@ enum {
     REF_GRAIN_VALUES = 256,
     REF_GRAIN_HALVES = 17,
     REF_GUARD_CELLS = 4,
-    REF_LINE_MAX = 4096 + REF_GUARD_CELLS, /* bins of a patch's line */
+    REF_OVERSCAN_MAX = 48,                                        /* cells at either end */
+    REF_LINE_MAX = 4096 + REF_GUARD_CELLS + 2 * REF_OVERSCAN_MAX, /* bins of a patch's line */
     REF_COARSE_CELLS = 128
 };
 
@@ -190,16 +194,22 @@ struct ref_place ref_path_at(const struct ref_path *path, double u);
 struct ref_place ref_patch_offset(struct ref_place centre, double azimuth_deg, double across_m,
                                   double along_m);
 
+/* Cells of a patch's line that are traced besides guard cells and shown ones: before the guard
+ * cells, and behind the patch. Each up to REF_OVERSCAN_MAX. */
+struct ref_overscan {
+    unsigned before, behind;
+};
+
 /* The biquadratic surface through nine points of the fan of a patch's lines: [across][along] at -w,
- * 0, +w, as it is at the centre's range, and at the near end of the guard cells, half-way, and at
- * the far end. w is half the number of lines. */
+ * 0, +w, as it is at the centre's range, and at the near end of the traced cells, half-way, and at
+ * their far end. w is half the number of lines. */
 struct ref_sar;
 struct ref_surface {
     double near_m, far_m; /* from the centre */
     double side_m;        /* w */
     double latitude_deg[3][3], longitude_deg[3][3];
 };
-struct ref_surface ref_sar_surface(const struct ref_sar *sar);
+struct ref_surface ref_sar_surface(const struct ref_sar *sar, struct ref_overscan overscan);
 
 /* The place of x_k and y_i. */
 struct ref_place ref_surface_at(const struct ref_surface *surface, double across_m, double along_m);
@@ -279,9 +289,14 @@ void ref_leak_line(struct ref_leak *leak, double most_db, unsigned lines_max, un
 double ref_leak(struct ref_leak *leak, const struct ref_params *params, unsigned line,
                 const struct ref_bin *shown, size_t count);
 
-/* Fill `ground`, `speckle_db` and `echo_db` of a patch's line whose first `guard` bins are not
- * shown: ground, floor and veil as powers, + the speckle of `grain`. */
-void ref_patch_echo(struct ref_bin *bins, size_t count, size_t guard,
+/* The bins of a patch's line: all, and of them those that are shown, from `first` on. */
+struct ref_patch_line {
+    size_t count, first, shown;
+};
+
+/* Fill `ground`, `speckle_db` and `echo_db` of a patch's line: ground where it is displayed, floor
+ * and veil as powers, + the speckle of `grain`. */
+void ref_patch_echo(struct ref_bin *bins, const struct ref_patch_line *cells,
                     const double table_db[REF_GRAIN_VALUES], const struct ref_params *params,
                     struct ref_leak *leak, unsigned line);
 
@@ -607,7 +622,9 @@ int ref_add_mover(const struct ref_mover *m, size_t lines, size_t cells, double 
 
 struct ref_picture {
     unsigned line_count, cell_count, guard_count; /* guard cells come before the shown ones */
-    struct ref_bin *bins;   /* owned: line_count x (guard_count + cell_count) */
+    struct ref_overscan
+        overscan;           /* of a patch: cells before the guard cells and behind the shown */
+    struct ref_bin *bins;   /* owned: line_count x all of these cells */
     double *start_horizons; /* owned: T before the first bin of each line */
     struct ref_view view;
     unsigned level; /* of the image */
@@ -642,6 +659,10 @@ unsigned ref_sar_lines(const struct ref_sar *sar);
 /* Layover of a patch: tan(psi) of flat ground at its centre, over the cell. */
 struct ref_lean ref_sar_lean(const struct ref_sar *sar, double reference_m);
 
+/* Overscan of a patch whose ground at the centre is reference_m high. */
+struct ref_overscan ref_sar_overscan(const struct ref_db *db, const struct ref_sar *sar,
+                                     const struct ref_params *params, double reference_m);
+
 /* The tables of a picture. */
 struct ref_tables {
     double grain_db[REF_GRAIN_VALUES];
@@ -661,11 +682,12 @@ struct ref_view ref_gm_view(const struct ref_db *db, const struct ref_gm *gm,
 /* Azimuth of the middle of line j. */
 double ref_gm_azimuth_deg(const struct ref_gm *gm, unsigned line);
 
-/* T before the first guard cell of line k: the coarse line. Assumed: the coarse line is the patch's
- * line prolonged towards the radar, its places on the parabola through the two ends and the middle;
- * its cells end where the first guard cell begins. */
+/* T before the first traced cell of line k, of which `before` are overscan: the coarse line.
+ * Assumed: the coarse line is the patch's line prolonged towards the radar, its places on the
+ * parabola through the two ends and the middle; its cells end where the first traced cell begins.
+ */
 double ref_sar_horizon(const struct ref_db *db, const struct ref_sar *sar,
-                       const struct ref_params *params, unsigned line);
+                       const struct ref_params *params, unsigned before, unsigned line);
 
 /* Room for the picture's lines and cells, all zero. Returns 0, or -1 with the error reported. */
 int ref_picture_allocate(struct ref_picture *picture);
@@ -674,12 +696,12 @@ int ref_picture_allocate(struct ref_picture *picture);
  * afterwards. */
 int ref_gm_sweep(struct ref_picture *picture, const struct ref_db *db, const struct ref_gm *gm,
                  const struct ref_params *params);
-/* Without overscan: what layover takes from the ends of a patch is not replaced. */
 int ref_sar_patch(struct ref_picture *picture, const struct ref_db *db, const struct ref_sar *sar,
                   const struct ref_params *params);
 void ref_picture_free(struct ref_picture *picture);
 
-/* The bin of a line and cell; cells -guard_count..-1 are the guard cells. */
+/* The bin of a line and cell. Cells -guard_count..-1 are the guard cells, overscan lies before them
+ * and from cell_count on. */
 struct ref_bin *ref_picture_bin(const struct ref_picture *picture, unsigned line, int cell);
 
 /* ---- a sector as the receiver hands it on (sector.c) ---- */

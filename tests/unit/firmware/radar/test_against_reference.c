@@ -23,14 +23,17 @@ struct world {
     struct lm_radar radar;
     struct ref_params params;
     double table_db[REF_GRAIN_VALUES];
-    struct ref_view view; /* of the patch */
+    struct ref_view view;         /* of the patch */
+    struct ref_overscan overscan; /* likewise */
+    struct ref_patch_line cells;
     struct lm_environment environment;
     bool is_rainy, is_plan;
 };
 
 /* How far apart two pictures are. */
 struct score {
-    uint32_t pixels, beyond_half_db, beyond_1_grey, lit_in_one;
+    uint32_t pixels, beyond_half_db, beyond_1_grey;
+    uint32_t ends, ends_beyond_half_db, ends_beyond_1_grey; /* of them, within an overscan */
     double worst_db, squares;
     struct ref_leak leak; /* of the lines so far */
 };
@@ -43,13 +46,16 @@ static void set_params(struct world *w)
     assert_int_equal(lm_tone_set(&w->tone, &sar->tone), LM_OK);
 }
 
-static struct world *make_world(uint8_t shift0, double scale, double latitude, double longitude)
+typedef double elevation_of(void *ctx, const struct tiny_place *p);
+
+static struct world *make_world_over(elevation_of *elevation_m, uint8_t shift0, double scale,
+                                     double latitude, double longitude)
 {
     struct world *w = calloc(1, sizeof *w);
     w->radar = lm_radar_default;
     struct tiny_spec spec = tiny_spec_at(latitude, longitude);
     spec.cell = scene_cell;
-    spec.elevation_m = scene_elevation_m;
+    spec.elevation_m = elevation_m;
     spec.ctx = &scale;
     spec.shift0 = shift0;
     spec.rows = spec.columns = 9;
@@ -59,6 +65,11 @@ static struct world *make_world(uint8_t shift0, double scale, double latitude, d
     return w;
 }
 
+static struct world *make_world(uint8_t shift0, double scale, double latitude, double longitude)
+{
+    return make_world_over(scene_elevation_m, shift0, scale, latitude, longitude);
+}
+
 static void free_world(struct world *w)
 {
     ref_db_close(&w->ref);
@@ -66,30 +77,37 @@ static void free_world(struct world *w)
     free(w);
 }
 
-/* What the cells of a patch's line draw, guard cells first. */
-static void take_draws(const struct lm_sar *sar, uint32_t line, struct ref_bin *bins)
+/* What the shown cells of a patch's line draw. */
+static void take_draws(const struct lm_sar *sar, uint32_t line, struct ref_bin *shown)
 {
     for (uint32_t i = 0; i < CELLS; i++) {
-        bins[REF_GUARD_CELLS + i].grain = ref_grain(sar->grain.row + line, sar->grain.column + i);
+        shown[i].grain = ref_grain(sar->grain.row + line, sar->grain.column + i);
     }
 }
 
-/* Compare what came out of a line with bins whose aspect is done and whose draws are known. */
+/* Compare what came out of a line with bins whose aspect is done and whose draws are known. The
+ * cells within an overscan of an end are ends, into which layover brings what lies outside. */
 static void compare_line(const struct world *w, struct ref_bin *bins, uint32_t line,
                          struct score *score)
 {
-    const uint32_t cells = REF_GUARD_CELLS + CELLS;
-    ref_class_gain(bins, cells, &w->params, 0);
-    ref_sea(bins, cells, &w->view, &w->params, 0);
-    ref_patch_echo(bins, cells, REF_GUARD_CELLS, w->table_db, &w->params, &score->leak, line);
-    ref_tone(bins, cells, &w->params);
-    for (uint32_t i = REF_GUARD_CELLS; i < cells; i++) {
-        const double error_db = fabs(decibels(w->level_q8[i]) - bins[i].echo_db);
+    const struct ref_patch_line *cells = &w->cells;
+    ref_class_gain(bins, cells->count, &w->params, 0);
+    ref_sea(bins, cells->count, &w->view, &w->params, 0);
+    ref_patch_echo(bins, cells, w->table_db, &w->params, &score->leak, line);
+    ref_tone(bins, cells->count, &w->params);
+    for (uint32_t i = 0; i < CELLS; i++) {
+        const struct ref_bin *bin = &bins[cells->first + i];
+        const double error_db = fabs(decibels(w->level_q8[LM_SAR_GUARD + i]) - bin->echo_db);
+        const bool is_off = abs(w->line.grey[LM_SAR_GUARD + i] - bin->grey) > 1;
+        const bool is_end = i < w->overscan.before || i + w->overscan.behind >= CELLS;
         score->pixels++;
         score->squares += error_db * error_db;
         score->worst_db = fmax(score->worst_db, error_db);
         score->beyond_half_db += error_db > 0.5;
-        score->beyond_1_grey += abs(w->line.grey[i] - bins[i].grey) > 1;
+        score->beyond_1_grey += is_off;
+        score->ends += is_end;
+        score->ends_beyond_half_db += is_end && error_db > 0.5;
+        score->ends_beyond_1_grey += is_end && is_off;
     }
 }
 
@@ -100,6 +118,10 @@ static void report(const char *what, const struct score *s)
         "grey level %.4f %%\n",
         what, s->pixels, sqrt(s->squares / s->pixels), s->worst_db,
         100.0 * s->beyond_half_db / s->pixels, 100.0 * s->beyond_1_grey / s->pixels);
+    print_message(
+        "#   at the ends: %u pixels, beyond 0.5 dB %.4f %%, beyond one grey level %.4f %%\n",
+        s->ends, 100.0 * s->ends_beyond_half_db / fmax(s->ends, 1),
+        100.0 * s->ends_beyond_1_grey / fmax(s->ends, 1));
 }
 
 /* At most one pixel in ten thousand beyond half a decibel: cells of which a sliver shows over the
@@ -124,10 +146,14 @@ static struct lm_sar start_patch(struct world *w, int look_deg, uint32_t cell_mm
         .range_m = range_m,
         .height_m_q6 = height_m * 64,
         .is_plan = w->is_plan};
-    const struct lm_sar_setup scene = {
-        .relief = {.reference_m_q10 = (int32_t)lround(reference_m * 1024)},
-        .sea_state = LM_SEA_STATE_OF_IMAGE,
-        .environment = w->is_rainy ? &w->environment : NULL};
+    /* The first reading asks for the tiles. */
+    (void)lm_sar_relief_of(&w->map.tiles, &w->radar, &command);
+    tiny_map_read_tiles(&w->map);
+    struct lm_sar_relief relief = lm_sar_relief_of(&w->map.tiles, &w->radar, &command);
+    relief.reference_m_q10 = (int32_t)lround(reference_m * 1024);
+    const struct lm_sar_setup scene = {.relief = relief,
+                                       .sea_state = LM_SEA_STATE_OF_IMAGE,
+                                       .environment = w->is_rainy ? &w->environment : NULL};
     assert_int_equal(lm_sar_start(&sar, &w->radar, &w->map.db, &command, &scene), LM_OK);
     for (uint32_t line = 0; line < sar.lines; line += 4) {
         lm_sar_prefetch(&sar, &w->map.tiles, line);
@@ -174,9 +200,10 @@ struct patch_scores {
 static double start_horizon(const struct world *w, const struct ref_sar *sar, uint32_t line)
 {
     const uint32_t past = line % LM_SAR_FOREGROUND_LINES, left = line - past;
-    const double at_left = ref_sar_horizon(&w->ref, sar, &w->params, left);
+    const unsigned before = w->overscan.before;
+    const double at_left = ref_sar_horizon(&w->ref, sar, &w->params, before, left);
     const double at_right =
-        ref_sar_horizon(&w->ref, sar, &w->params, left + LM_SAR_FOREGROUND_LINES);
+        ref_sar_horizon(&w->ref, sar, &w->params, before, left + LM_SAR_FOREGROUND_LINES);
     return at_left + (at_right - at_left) * past / LM_SAR_FOREGROUND_LINES;
 }
 
@@ -187,11 +214,15 @@ static void score_patch_line(struct world *w, const struct ref_sar *wanted,
                              struct patch_scores *scores)
 {
     const double horizon = ldexp((double)sar->horizon, -40);
-    const uint32_t cells = CELLS + REF_GUARD_CELLS;
-    struct ref_bin *bins = ref_picture_bin(picture, line, -REF_GUARD_CELLS);
+    const uint32_t cells = (uint32_t)w->cells.count;
+    struct ref_bin *bins = ref_picture_bin(picture, line, 0) - w->cells.first;
     const double wanted_horizon = start_horizon(w, wanted, line);
-    assert_true(fabs(horizon - wanted_horizon) < 1e-5); /* 9 cm at 9 km */
-    take_draws(sar, line, bins);
+    /* 9 cm at 9 km; and the firmware's 128 coarse cells are whole 1/256 m long, so that the last of
+     * them lies up to half a metre nearer, where the ray falls by H / s of it. */
+    const double near_m = bins[0].range_m;
+    assert_true(fabs(horizon - wanted_horizon) <
+                1e-5 + 0.5 * wanted->antenna_m / (near_m * near_m));
+    take_draws(sar, line, bins + w->cells.first);
     memcpy(copy, bins, cells * sizeof *copy);
     ref_illuminate(copy, cells, &picture->view, &w->params, wanted_horizon);
     compare_line(w, copy, line, &scores->whole);
@@ -222,8 +253,12 @@ static void score_patch(struct world *w, int look_deg, double cell_m, double ran
     w->params.lean = ref_sar_lean(&wanted, picture.view.reference_m);
     struct lm_sar sar = start_patch(w, look_deg, (uint32_t)lround(cell_m * 1000), (uint32_t)range_m,
                                     (int32_t)height_m, picture.view.reference_m);
-    struct ref_bin *copy = calloc(CELLS + REF_GUARD_CELLS, sizeof *copy);
     assert_int_equal(sar.lines, picture.line_count);
+    assert_int_equal(sar.overscan, picture.overscan.before);
+    assert_int_equal(sar.traced - sar.overscan - LM_SAR_GUARD - CELLS, picture.overscan.behind);
+    w->overscan = picture.overscan;
+    w->cells = (struct ref_patch_line){sar.traced, sar.overscan + REF_GUARD_CELLS, CELLS};
+    struct ref_bin *copy = calloc(w->cells.count, sizeof *copy);
     for (uint32_t k = 0; k < sar.lines; k++) {
         lm_sar_sample_line(&sar, &w->map.tiles, k, &w->line, w->level_q8);
         lm_tone_run(&w->tone, w->level_q8, w->line.grey, CELLS + REF_GUARD_CELLS);
@@ -278,4 +313,40 @@ TEST(patches_in_rain_agree_with_the_reference)
     judge_stages(&scores.stage);
     assert_true(scores.whole.beyond_half_db * 200 <= scores.whole.pixels);
     assert_true(scores.whole.beyond_1_grey * 200 <= scores.whole.pixels);
+}
+
+/* The hills on a slope of 4 in 10 that rises to the north-east. */
+static double slope_elevation_m(void *ctx, const struct tiny_place *p)
+{
+    return 900 + scene_elevation_m(ctx, p) + 0.32 * p->north_m + 0.25 * p->east_m;
+}
+
+/* Layover fills both ends with what lies outside, to the limit of overscan in the last patch, whose
+ * edge then has a strip of noise; in the third the far end lies low, and the near one high. */
+TEST(ends_of_patches_on_a_slope_agree_with_the_reference)
+{
+    struct patch_scores scores = {0};
+    const struct score *stage = &scores.stage, *whole = &scores.whole;
+    struct world *w = make_world_over(slope_elevation_m, 9, 1, 46, 11);
+    score_patch(w, 30, 5, 20000, 4000, &scores);
+    score_patch(w, 0, 3, 9000, 3000, &scores);
+    score_patch(w, 215, 5, 20000, 9000, &scores);
+    score_patch(w, 38, 3, 12000, 9000, &scores);
+    assert_int_equal(w->overscan.before, REF_OVERSCAN_MAX);
+    assert_int_equal(w->overscan.behind, REF_OVERSCAN_MAX);
+    free_world(w);
+    report("patches on a slope, aspect to tone on the same ground", stage);
+    report("patches on a slope, whole", whole);
+    /* Two in ten thousand are slivers of cells that look along the slope: more than elsewhere. */
+    assert_true(stage->pixels > 200000 && stage->ends > 20000);
+    assert_true(stage->beyond_half_db * 4000 <= stage->pixels);
+    assert_true(stage->beyond_1_grey * 1000 <= stage->pixels);
+    assert_true(stage->ends_beyond_half_db * 1000 <= stage->ends);
+    assert_true(stage->ends_beyond_1_grey * 400 <= stage->ends);
+    /* Three centimetres beside the reference's place are a centimetre of height here, and a
+     * sixteenth of a cell more or less of layover for one pixel in sixteen, at the ends. */
+    assert_true(whole->beyond_half_db * 50 <= whole->pixels);
+    assert_true(whole->beyond_1_grey * 25 <= whole->pixels);
+    assert_true(whole->ends_beyond_half_db * 40 <= whole->ends);
+    assert_true(whole->ends_beyond_1_grey * 12 <= whole->ends);
 }

@@ -120,7 +120,7 @@ static double worst_of_surface(double range_m)
                                     .range_m = range_m,
                                     .cell_m = 80,
                                     .cell_count = 256};
-        const struct ref_surface s = ref_sar_surface(&sar);
+        const struct ref_surface s = ref_sar_surface(&sar, (struct ref_overscan){0});
         for (int i = 0; i < 441; i++) {
             const int column = i % 21, row = i / 21;
             const double x = (column - 10) * 1000.0, y = (row - 10) * 1000.0;
@@ -146,7 +146,7 @@ TEST(right_of_a_line_of_sight_to_the_north_is_east)
 {
     const struct ref_sar sar = {
         .centre = {46, 11}, .range_m = 20000, .cell_m = 8, .cell_count = 256};
-    const struct ref_surface s = ref_sar_surface(&sar);
+    const struct ref_surface s = ref_sar_surface(&sar, (struct ref_overscan){0});
     const struct ref_place right = ref_surface_at(&s, 500, 0), far = ref_surface_at(&s, 0, 500);
     assert_true(right.longitude_deg > 11.006 && fabs(right.latitude_deg - 46) < 1e-5);
     assert_true(far.latitude_deg > 46.004 && fabs(far.longitude_deg - 11) < 1e-9);

@@ -310,6 +310,57 @@ TEST(a_ridge_before_the_patch_throws_its_shadow_into_it)
     ref_db_close(&db);
 }
 
+/* A slope to the north with hills on it: both ends of a patch that looks there lose ground. */
+static double hilly_slope_m(void *ctx, const struct tiny_place *place)
+{
+    (void)ctx;
+    return 800 + 0.3 * place->north_m + 15 * sin(place->east_m / 60) * cos(place->north_m / 80);
+}
+
+/* What layover brings into a patch is what a patch twice as large shows there, whose ends are
+ * elsewhere. */
+TEST(overscan_fills_the_ends_with_what_a_larger_patch_shows_there)
+{
+    struct tiny_spec spec = tiny_spec_at(46, 11);
+    spec.shift0 = 9;
+    spec.rows = spec.columns = 6;
+    spec.elevation_m = hilly_slope_m;
+    struct ref_db db;
+    open_image(&db, &spec);
+    const struct ref_params params = ref_params_default();
+    struct ref_sar sar = {
+        .centre = {46, 11}, .range_m = 20000, .antenna_m = 9000, .cell_m = 5, .cell_count = 128};
+    struct ref_picture small, large;
+    assert_int_equal(ref_sar_patch(&small, &db, &sar, &params), 0);
+    sar.cell_count = 256;
+    assert_int_equal(ref_sar_patch(&large, &db, &sar, &params), 0);
+    print_message("# overscan: %u cells before, %u behind\n", small.overscan.before,
+                  small.overscan.behind);
+    /* 80 cells beyond the centre the slope is 120 m above it: 0.44 of 5 m each make 10.6 cells less
+     * the Earth's drop, and two more. The hills add or take 1.3. */
+    assert_in_range(small.overscan.before, 10, 14);
+    assert_in_range(small.overscan.behind, 10, 14);
+    unsigned beside = 0;
+    for (unsigned line = 0; line < small.line_count; line++) {
+        const unsigned twin = line + (large.line_count - small.line_count) / 2;
+        for (int cell = 0; cell < 128; cell++) {
+            const double here = ref_picture_bin(&small, line, cell)->ground;
+            const double there = ref_picture_bin(&large, twin, cell + 64)->ground;
+            beside += fabs(10 * log10(here / there)) > 0.1;
+        }
+    }
+    print_message("# %u of %u pixels are not those of the larger patch\n", beside,
+                  128 * small.line_count);
+    assert_true(beside * 1000 < 128 * small.line_count);
+    sar.is_plan = true;
+    ref_picture_free(&small);
+    assert_int_equal(ref_sar_patch(&small, &db, &sar, &params), 0);
+    assert_int_equal(small.overscan.before + small.overscan.behind, 0);
+    ref_picture_free(&small);
+    ref_picture_free(&large);
+    ref_db_close(&db);
+}
+
 static double plateau_m(void *ctx, const struct tiny_place *place)
 {
     (void)ctx;
