@@ -1,4 +1,4 @@
-"""What segment's rule for mixtures does, beside no rule, the sieve and a majority of 3 x 3.
+"""What segment's rule for mixtures and its sieve do, beside no rule, GDAL's sieve and a majority of 3 x 3.
 
 Usage: mixtures.py BUILD-DIR [OPTION-OF-TRAIN..]. A line a rule:
 
@@ -24,6 +24,7 @@ from scipy import ndimage
 gdal.UseExceptions()
 BIN = pathlib.Path(sys.argv[1]) / "bin"
 CLASSES = "host-sim/programs/db/classes/heaton6.classes"
+SPECK = 3  # pixels: regions of fewer are specks, as --sieve 60 has them in pixels of 5 m
 RULES = (("the network alone", ("--mixtures", 0, "--sieve", 0)), ("sieve", ("--mixtures", 0)), ("mixtures", ("--sieve", 0)),
          ("mixtures and sieve", ()))
 SOIL, ASPHALT, CONCRETE, STRUCTURE, VEGETATION, WATER = range(6)
@@ -44,6 +45,14 @@ def majority(given, classes):
     votes = np.stack([sum((p == c).astype(np.uint8) for p in around(given)) for c in range(classes)])
     own = np.take_along_axis(votes, given[None].astype(int), 0)[0]
     return np.where(own == votes.max(0), given, votes.argmax(0))
+
+
+def gdal_sieved(given):
+    """Specks take the class of their largest neighbour."""
+    band = [gdal.GetDriverByName("MEM").Create("", *given.shape[::-1]) for _ in range(2)]
+    band[0].WriteArray(given)
+    gdal.SieveFilter(band[0].GetRasterBand(1), None, band[1].GetRasterBand(1), SPECK, 8)
+    return band[1].ReadAsArray()
 
 
 def general(given, shares, where):
@@ -70,7 +79,7 @@ def of_the_built_in(given, shares, cell_m, airfield):
 
 
 def say(name, figures, rest=()):
-    line = f"{name:20s} right {figures[0]:6.2f} %, of the mixed {figures[1]:5.2f} %, alien {figures[2]:5.2f} %"
+    line = f"{name:31s} right {figures[0]:6.2f} %, of the mixed {figures[1]:5.2f} %, alien {figures[2]:5.2f} %"
     if rest:
         line += "; blobs %.2f /km, notches %.3f ha, roofs %.1f %%, area %.2f" % rest
     print(line, flush=True)
@@ -104,10 +113,16 @@ def built_in(folder):
         if name == RULES[0][0]:
             voted = majority(given, 6)
             say("majority of 3 x 3", general(voted, shares, everywhere), of_the_built_in(voted, shares, cell_m, airfield))
+        if options[-2:] == ("--sieve", 0):
+            left = gdal_sieved(given)
+            say(f"{name}, GDAL's sieve", general(left, shares, everywhere), of_the_built_in(left, shares, cell_m, airfield))
 
 
 def jasper(folder, data):
-    image, names = data / "tm_like_6band.bsq", ("tree", "water", "dirt", "road")
+    names = "tree", "water", "dirt", "road"
+    # Somewhere, in pixels of 20 m: a speck's ground is counted in square metres.
+    image = folder / "jasper.tif"
+    gdal.Translate(str(image), str(data / "tm_like_6band.bsq"), outputSRS="EPSG:32610", outputBounds=(0, 2000, 2000, 0))
     shares = gdal.Open(str(data / "abundance_tree_water_dirt_road.bsq")).ReadAsArray().transpose(1, 2, 0)
     rows, columns = np.mgrid[0:shares.shape[0], 0:shares.shape[1]]
     (folder / "t").write_text("".join(f"[{n}]\ncolour = 0 0 0\nkind = ground\ngamma_db = -20\nspread_db = 3\nlimits_db = -30 -10\n"
@@ -123,11 +138,13 @@ def jasper(folder, data):
         for seed in (1, 2, 3):
             run("landmass-db", "train", "--image", image, "--classes", folder / "t", "--labels", folder / "labels.tif", "--map",
                 folder / "m", "--net", folder / "net", "--seed", seed, "--priors", "equal", *sys.argv[2:])
-            for name, options in (RULES[0], RULES[2]):
+            for name, options in (RULES[0], RULES[2], ("mixtures and sieve", ("--sieve", 400 * SPECK))):
                 given = segmented(folder, image, folder / "t", *options)
                 figures.setdefault(name, []).append(general(given, shares, judged))
                 if name == RULES[0][0]:
                     figures.setdefault("majority of 3 x 3", []).append(general(majority(given, 4), shares, judged))
+                if name == RULES[2][0]:
+                    figures.setdefault("mixtures, GDAL's sieve", []).append(general(gdal_sieved(given), shares, judged))
     print("Jasper Ridge, 6 bands, means of two halves and three seeds")
     for name, rows in figures.items():
         say(name, np.mean(rows, 0))

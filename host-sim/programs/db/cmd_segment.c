@@ -8,6 +8,7 @@
 #include "classify/learn.h"
 #include "classify/mixtures.h"
 #include "classify/mlp_apply.h"
+#include "classify/specks.h"
 #include "gis/class_raster.h"
 #include "gis/gdal_start.h"
 #include "gis/preview.h"
@@ -46,6 +47,8 @@ static const struct hs_usage usage = {
         "  landmass-db segment --image scene.tif --classes heaton6.classes --net scene.net \\\n"
         "      --out scene-classes.tif --picture scene-classes.png",
 };
+
+_Static_assert((int)DB_SPECKS_HALO <= (int)DB_MIXTURES_HALO, "a block has room for either");
 
 struct options {
     struct db_image_options image;
@@ -92,9 +95,9 @@ static bool read_options(struct options *o, int argc, char **argv, int *exit_cod
         {"sieve", HS_REAL, &o->sieve, 0, 10000, "M2",
          "Regions of one class that cover less ground than so many square metres, corners counted "
          "as\n"
-         "borders, take the class of their largest neighbour; 0 keeps them all. Pixels that are "
-         "larger\n"
-         "are none.",
+         "borders, take the class around them that looks most like them; 0 keeps them all. Pixels "
+         "that are\n"
+         "larger are none.",
          false},
         {"spare", HS_LIST, &o->spare, 0, 0, "CLASS,..",
          "Classes whose smallest regions stay: what people built, say, where a lone house counts.",
@@ -388,21 +391,52 @@ static int resolve_block(struct work *w, const struct block *b)
 
 /* ---- the sieve ---- */
 
-/* `reject` holds what stood there before the sieve: what is spared has it again. */
-static int restore_spared(struct work *w, const struct block *b)
+/* The rows of the block as they are, and those around them. */
+static struct db_specks_block around(const struct work *w, const struct block *b)
 {
-    const size_t count = (size_t)b->rows * (size_t)w->image.grid.width;
-    uint64_t restored = 0;
-    for (size_t i = 0; i < count; i++) {
-        const uint8_t raw = b->reject[i];
-        if (raw != b->classes[i] && raw < DB_CLASS_MAX && w->is_spared[raw]) {
-            b->classes[i] = raw;
-            restored++;
+    const int top = b->y > DB_SPECKS_HALO ? b->y - DB_SPECKS_HALO : 0;
+    const int wanted = b->y + b->rows + DB_SPECKS_HALO;
+    const int bottom = wanted < w->image.grid.height ? wanted : w->image.grid.height;
+    return (struct db_specks_block){.planes = b->planes,
+                                    .before = b->reject,
+                                    .after = b->classes,
+                                    .width = w->image.grid.width,
+                                    .rows = bottom - top,
+                                    .first = b->y - top,
+                                    .count = b->rows};
+}
+
+static bool has_specks(const struct work *w, const struct db_specks_block *s)
+{
+    const size_t end = (size_t)s->rows * (size_t)s->width;
+    for (size_t at = 0; at < end; at++) {
+        if (db_specks_has(s, w->is_spared, at)) {
+            return true;
         }
-        w->sieved += raw != b->classes[i];
+    }
+    return false;
+}
+
+/* `classes` becomes what is written, of the block's rows alone. The rows above are those that the
+ * sieve left or a block before wrote: specks are told by them all the same, as no pixel of a speck
+ * takes the class that it had. */
+static int settle_specks(struct work *w, const struct block *b)
+{
+    const struct db_specks_block s = around(w, b);
+    const int top = b->y - s.first;
+    const size_t count = (size_t)b->rows * (size_t)s.width;
+    if (read_back(w, w->before_sieve, top, s.rows, b->reject) != 0 ||
+        read_back(w, &w->out, top, s.rows, b->classes) != 0 ||
+        (has_specks(w, &s) && db_raster_read(&w->image, top, s.rows, b->planes, b->valid) != 0)) {
+        return -1;
+    }
+    w->sieved += db_specks_settle(&w->net, w->is_spared, &s, b->valid);
+    const bool is_new = memcmp(b->valid, s.after + (size_t)s.first * (size_t)s.width, count) != 0;
+    memcpy(b->classes, b->valid, count);
+    for (size_t i = 0; i < count; i++) {
         w->written[b->classes[i]]++;
     }
-    return restored ? db_raster_write(&w->out, b->y, b->rows, b->classes) : 0;
+    return is_new ? db_raster_write(&w->out, b->y, b->rows, b->classes) : 0;
 }
 
 static void keep_classes(struct work *w, const struct block *b)
@@ -420,8 +454,7 @@ static void keep_classes(struct work *w, const struct block *b)
 
 static int finish_block(struct work *w, const struct block *b)
 {
-    if (read_back(w, w->before_sieve, b->y, b->rows, b->reject) != 0 ||
-        read_back(w, &w->out, b->y, b->rows, b->classes) != 0 || restore_spared(w, b) != 0) {
+    if (settle_specks(w, b) != 0) {
         return -1;
     }
     keep_classes(w, b);
@@ -476,7 +509,7 @@ static int segment(struct work *w)
     const struct db_grid *grid = &w->image.grid;
     const size_t bytes = db_feature_bytes(w->image.band_count, w->net.context) + 2 + sizeof(float);
     const int rows = db_raster_block_rows(grid, bytes);
-    const size_t held = (size_t)rows + (w->options->mixtures > 0 ? 2 * DB_MIXTURES_HALO : 0);
+    const size_t held = (size_t)rows + 2 * DB_MIXTURES_HALO;
     struct block b;
     if (alloc_block(w, &b, held * (size_t)grid->width) != 0) {
         return -1;

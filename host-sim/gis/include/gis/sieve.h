@@ -1,6 +1,7 @@
-/* Sieve: specks of a class raster take the class around them. A speck is an 8-connected component
- * of one class that covers less ground than a limit. A classifier that looks at one pixel at a time
- * makes them at borders, where a pixel is a mixture of two classes and looks like a third. */
+/* Sieve: specks of a class raster take the class of their largest neighbour; classify/specks.h goes
+ * on from there. A speck is an 8-connected component of one class that covers less ground than a
+ * limit. A classifier that looks at one pixel at a time makes them at borders, where a pixel is a
+ * mixture of two classes and looks like a third. */
 #ifndef GIS_SIEVE_H
 #define GIS_SIEVE_H
 

@@ -145,8 +145,11 @@ static void put_town(float bands[2][WIDTH * HEIGHT], int x, int y, int width, in
     }
 }
 
+enum { RIVER_X = 70, WRONG_Y = 33 };
+
 /* Field with towns of 1, 4, 2 (touching at corners alone) and 5 pixels of 1 m2, and a hole of one
- * pixel without data, in which nothing may grow. */
+ * pixel without data, in which nothing may grow. A river one pixel wide, of which one looks like a
+ * town and a little like water. */
 static void write_specks(void)
 {
     static float bands[2][WIDTH * HEIGHT];
@@ -160,6 +163,10 @@ static void write_specks(void)
     put_town(bands, 20, 20, 1, 1);
     put_town(bands, 21, 21, 1, 1);
     put_town(bands, 30, 30, 5, 1);
+    for (int y = 0; y < HEIGHT; y++) {
+        bands[0][y * WIDTH + RIVER_X] = y == WRONG_Y ? 150 : 15;
+        bands[1][y * WIDTH + RIVER_X] = y == WRONG_Y ? 8 : 20;
+    }
     bands[0][40 * WIDTH + 40] = bands[1][40 * WIDTH + 40] = 0;
     fixture_raster("specks1.tif", &grid, GDT_Byte, bands[0], 0);
     fixture_raster("specks2.tif", &grid, GDT_Byte, bands[1], 0);
@@ -187,12 +194,15 @@ TEST(specks_take_the_class_around_them_unless_they_are_spared)
     static uint8_t found[WIDTH * HEIGHT];
     train_scene("scene.net");
     write_specks();
-    assert_int_equal(towns_after("--sieve 0", found), 12);
+    assert_int_equal(towns_after("--sieve 0", found), 13);
+    assert_int_equal(found[WRONG_Y * WIDTH + RIVER_X], 2);
     assert_int_equal(towns_after("", found), 0);
     assert_int_equal(towns_after("--sieve 5", found), 5);
+    /* Its largest neighbour is the field. */
+    assert_int_equal(found[WRONG_Y * WIDTH + RIVER_X], 1);
     assert_true(found[30 * WIDTH + 34] == 2 && found[10 * WIDTH + 10] == 0);
     assert_int_equal(towns_after("--sieve 2", found), 11);
-    assert_int_equal(towns_after("--sieve 5 --spare field,town", found), 12);
+    assert_int_equal(towns_after("--sieve 5 --spare field,town", found), 13);
     assert_true(fixture_fails(HS_EXIT_FAILED, "there is no class `castle`; there are field",
                               "segment " SCENE " --net %s --out %s --spare castle", SCENE_PATHS,
                               fixture_path("scene.net"), fixture_path("never.tif")));
