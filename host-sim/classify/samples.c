@@ -25,14 +25,11 @@ struct window {
     double *sum, *square, *sure; /* of each column, over the window's rows */
 };
 
-static void add_row(struct window *w, int row, double sign)
+static void add_row(struct window *w, int row)
 {
-    if (row < 0 || row >= w->height) {
-        return;
-    }
     const size_t begin = (size_t)row * (size_t)w->width;
     for (int x = 0; x < w->width; x++) {
-        const double v = w->plane[begin + (size_t)x], use = w->valid[begin + (size_t)x] ? sign : 0;
+        const double v = w->plane[begin + (size_t)x], use = w->valid[begin + (size_t)x] ? 1 : 0;
         w->sum[x] += use * v;
         w->square[x] += use * v * v;
         w->sure[x] += use;
@@ -64,19 +61,20 @@ static void write_row(const struct window *w, float *mean, float *deviation)
     }
 }
 
+/* Each row is summed anew. A sum that slid down the image would be rounded by the rows it has left
+ * behind, and pixels would depend on where a block begins. */
 static void fill_windows(struct window *w, int first, int rows, float *mean, float *deviation)
 {
     const size_t bytes = (size_t)w->width * sizeof *w->sum;
-    memset(w->sum, 0, bytes);
-    memset(w->square, 0, bytes);
-    memset(w->sure, 0, bytes);
-    for (int row = first - w->half; row < first + w->half; row++) {
-        add_row(w, row, 1);
-    }
     for (int i = 0; i < rows; i++) {
-        add_row(w, first + i + w->half, 1);
+        const int top = first + i - w->half, bottom = first + i + w->half;
+        memset(w->sum, 0, bytes);
+        memset(w->square, 0, bytes);
+        memset(w->sure, 0, bytes);
+        for (int row = top > 0 ? top : 0; row <= bottom && row < w->height; row++) {
+            add_row(w, row);
+        }
         write_row(w, mean + (size_t)i * (size_t)w->width, deviation + (size_t)i * (size_t)w->width);
-        add_row(w, first + i - w->half, -1);
     }
 }
 

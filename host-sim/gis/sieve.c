@@ -1,14 +1,15 @@
 #include "gis/sieve.h"
 
 #include "gis/gdal_start.h"
+#include "hs/class_table.h"
 #include "hs/error.h"
-#include "hs/progress.h"
 
 #include <gdal_alg.h>
 #include <math.h>
 #include <ogr_srs_api.h>
+#include <stdio.h>
 
-enum { CONNECTEDNESS = 8, PIXELS_MAX = 1 << 20, PROGRESS_STEPS = 1000 };
+enum { CONNECTEDNESS = 8, PIXELS_MAX = 1 << 20, MARGIN_LEAST = 256 };
 
 /* Area of a pixel in the middle of the grid, m2; 0 when nothing tells. */
 static double pixel_m2(const struct db_grid *grid)
@@ -34,26 +35,46 @@ int db_sieve_pixels(const struct db_grid *grid, double speck_m2)
     return area_m2 > 0 ? (int)fmin(fmax(ceil(speck_m2 / area_m2), 1), PIXELS_MAX) : 1;
 }
 
-static int show(double share, const char *message, void *progress)
+int db_sieve_margin(int pixels)
 {
-    (void)message;
-    hs_progress_update(progress, (uint64_t)(share * PROGRESS_STEPS));
-    return 1;
+    const int64_t margin = 4 * (int64_t)pixels;
+    return pixels <= 1 ? 0
+           : margin <= MARGIN_LEAST
+               ? MARGIN_LEAST
+               : (int)((margin + MARGIN_LEAST - 1) / MARGIN_LEAST * MARGIN_LEAST);
 }
 
-int db_sieve(struct db_raster_out *to, const struct db_raster_out *from, int pixels)
+/* A dataset over pixels of ours. */
+static GDALDatasetH over(uint8_t *classes, int width, int rows)
 {
-    const GDALRasterBandH source = GDALGetRasterBand(from->dataset, 1);
-    struct hs_progress progress;
-    CPLErrorReset();
-    hs_progress_begin(&progress, "sieve", PROGRESS_STEPS);
-    const CPLErr result =
-        GDALSieveFilter(source, GDALGetMaskBand(source), GDALGetRasterBand(to->dataset, 1), pixels,
-                        CONNECTEDNESS, NULL, show, &progress);
-    hs_progress_end(&progress);
-    if (result != CE_None) {
-        return hs_error(to->path, "free some space and memory, or give --sieve 0",
-                        "cannot be sieved: %s", db_gdal_complaint());
+    char name[64];
+    char *options[] = {name, NULL};
+    snprintf(name, sizeof name, "DATAPOINTER=%p", (void *)classes);
+    GDALDatasetH d = GDALCreate(GDALGetDriverByName("MEM"), "", width, rows, 0, GDT_Byte, NULL);
+    if (d && (GDALAddBand(d, GDT_Byte, options) != CE_None ||
+              GDALSetRasterNoDataValue(GDALGetRasterBand(d, 1), DB_CLASS_NODATA) != CE_None)) {
+        GDALClose(d);
+        d = NULL;
     }
-    return 0;
+    return d;
+}
+
+int db_sieve(uint8_t *classes, int width, int rows, int pixels, const char *name)
+{
+    if (pixels <= 1) {
+        return 0;
+    }
+    CPLErrorReset();
+    const GDALDatasetH d = over(classes, width, rows);
+    const GDALRasterBandH band = d ? GDALGetRasterBand(d, 1) : NULL;
+    const CPLErr result = band ? GDALSieveFilter(band, GDALGetMaskBand(band), band, pixels,
+                                                 CONNECTEDNESS, NULL, NULL, NULL)
+                               : CE_Failure;
+    if (d) {
+        GDALFlushCache(d);
+        GDALClose(d);
+    }
+    return result == CE_None ? 0
+                             : hs_error(name, "free some memory, or give --sieve 0",
+                                        "cannot be sieved: %s", db_gdal_complaint());
 }

@@ -35,10 +35,10 @@ $(SIGN_TESTS): $(O)/bin/tests/system/%: tests/system/%.py $(O)/bin/landmass-db $
 	@printf '#!/bin/sh\nexec $${PYTHON:-/usr/bin/python3} -B %s "$$@"\n' '$<' >$@
 	@chmod +x $@
 
-# Images that are made in shards.
-SHARDS_TEST := $(O)/bin/tests/system/test_shards
-TESTS += $(SHARDS_TEST)
-$(SHARDS_TEST): tests/system/test_shards.py $(addprefix $(O)/bin/landmass-,db scene)
+# Images, and rasters, that are made in shards.
+SHARDS_TESTS := $(addprefix $(O)/bin/tests/system/,test_shards test_strips)
+TESTS += $(SHARDS_TESTS)
+$(SHARDS_TESTS): $(O)/bin/tests/system/%: tests/system/%.py $(addprefix $(O)/bin/landmass-,db scene)
 	@mkdir -p $(@D)
-	@printf '#!/bin/sh\nexec $${PYTHON:-/usr/bin/python3} -B tests/system/test_shards.py\n' >$@
+	@printf '#!/bin/sh\nexec $${PYTHON:-/usr/bin/python3} -B %s\n' '$<' >$@
 	@chmod +x $@

@@ -82,10 +82,6 @@ int build_job_shard(const struct build_settings *given);
 /* Read a plan and its options, which stay in `work`. */
 int build_job_read_plan(struct build_work *work, struct build_settings *s, const char *path);
 
-double build_job_seconds(void);
-/* Print and report what the process took: seconds, seconds of a processor, memory. */
-void build_job_report_cost(double seconds);
-
 /* The text of choices that count for every tile. */
 void build_job_choices(const struct build_context *b, const struct build_settings *s, char *text,
                        size_t room);

@@ -1,5 +1,6 @@
 #include "build_job.h"
 #include "commands.h"
+#include "cost.h"
 
 #include "build/geoid.h"
 #include "build/heights.h"
@@ -25,7 +26,6 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <sys/resource.h>
 #include <time.h>
 
 static const struct hs_usage usage = {
@@ -1049,13 +1049,6 @@ static void print_detail(const struct build_context *b, const char *path)
     }
 }
 
-double build_job_seconds(void)
-{
-    struct timespec t;
-    clock_gettime(CLOCK_MONOTONIC, &t);
-    return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
-}
-
 /* DTED keeps whole columns in a block: a row of tiles over fourteen degrees of level 2 stays in
  * memory. */
 static const int64_t cache_bytes = (int64_t)384 << 20;
@@ -1078,7 +1071,7 @@ void build_job_print(const struct build_context *b, const struct build_settings 
 
 static int build(const struct build_settings *s)
 {
-    const double start = build_job_seconds();
+    const double start = db_cost_seconds();
     GDALSetCacheMax64(cache_bytes);
     struct build_context *b = calloc(1, sizeof *b);
     if (!b) {
@@ -1093,7 +1086,7 @@ static int build(const struct build_settings *s)
         result = manifest ? build_job_write(b, s, NULL, manifest, &extras, &report) : -1;
     }
     if (result == 0) {
-        build_job_print(b, s, &extras, &report, build_job_seconds() - start);
+        build_job_print(b, s, &extras, &report, db_cost_seconds() - start);
     }
     build_job_free_extras(&extras);
     free(manifest);
@@ -1152,22 +1145,6 @@ static int make_part(struct build_context *b, const struct build_settings *s,
     return 0;
 }
 
-void build_job_report_cost(double seconds)
-{
-    struct rusage used;
-    if (getrusage(RUSAGE_SELF, &used) == 0) {
-        const double processor_s =
-            (double)used.ru_utime.tv_sec + 1e-6 * (double)used.ru_utime.tv_usec +
-            (double)used.ru_stime.tv_sec + 1e-6 * (double)used.ru_stime.tv_usec;
-        const double memory_mib = (double)used.ru_maxrss / 1024;
-        printf("done in %.1f s, %.1f s of a processor, %.0f MiB\n", seconds, processor_s,
-               memory_mib);
-        hs_report_put("seconds", seconds);
-        hs_report_put("processor_s", processor_s);
-        hs_report_put("memory_mib", memory_mib);
-    }
-}
-
 static int build_shard(struct build_context *b, const struct build_settings *from,
                        const struct build_work *work)
 {
@@ -1190,7 +1167,7 @@ static int build_shard(struct build_context *b, const struct build_settings *fro
 
 int build_job_shard(const struct build_settings *given)
 {
-    const double start = build_job_seconds();
+    const double start = db_cost_seconds();
     GDALSetCacheMax64((int64_t)BUILD_WORK_CACHE_MIB << 20);
     struct build_work work;
     struct build_settings s = build_job_defaults();
@@ -1210,7 +1187,7 @@ int build_job_shard(const struct build_settings *given)
         build_work_free(&work);
     }
     if (result == 0) {
-        build_job_report_cost(build_job_seconds() - start);
+        db_cost_report(db_cost_seconds() - start);
     }
     hs_list_free(&s.terrain);
     free(b);

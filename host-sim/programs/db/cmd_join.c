@@ -1,5 +1,6 @@
 #include "build_job.h"
 #include "commands.h"
+#include "cost.h"
 
 #include "build/part.h"
 #include "hs/error.h"
@@ -169,7 +170,7 @@ static void add_sums(struct build_context *b, const struct build_part_head *h)
 
 static int make_image(struct join *j, const char *folder, const struct hs_list *paths)
 {
-    const double start = build_job_seconds();
+    const double start = db_cost_seconds();
     struct build_extras extras;
     struct build_report report = {0};
     const struct build_made made = {j, j->work.shards[0].place.level, take};
@@ -187,8 +188,8 @@ static int make_image(struct join *j, const char *folder, const struct hs_list *
         result = build_job_write(j->b, &j->settings, &made, j->work.manifest, &extras, &report);
     }
     if (result == 0) {
-        build_job_print(j->b, &j->settings, &extras, &report, build_job_seconds() - start);
-        build_job_report_cost(build_job_seconds() - start);
+        build_job_print(j->b, &j->settings, &extras, &report, db_cost_seconds() - start);
+        db_cost_report(db_cost_seconds() - start);
     }
     build_job_free_extras(&extras);
     return result;

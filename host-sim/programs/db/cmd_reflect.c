@@ -1,5 +1,6 @@
 /* landmass-db reflect: a class raster in, a reflectivity raster out. */
 #include "commands.h"
+#include "cost.h"
 #include "pixel_places.h"
 #include "radar_image.h"
 #include "source_options.h"
@@ -7,6 +8,7 @@
 #include "gis/class_raster.h"
 #include "gis/preview.h"
 #include "gis/sensor_tag.h"
+#include "gis/strips.h"
 #include "hs/atomic_file.h"
 #include "hs/error.h"
 #include "hs/png.h"
@@ -58,6 +60,9 @@ static const struct hs_usage usage = {
         "share of 8..12 um\n"
         "radiation that is reflected, in dB; `landmass-db infrared` makes pictures of what is "
         "emitted.\n\n"
+        "A large raster is made in strips (--shards, --shard), on whatever machine. Adjust and "
+        "radar look at\n"
+        "all pixels of a class before they give one its value, and do without.\n\n"
         "Example:\n"
         "  landmass-db reflect --class-raster scene-classes.tif --classes heaton6.classes \\\n"
         "      --method adjust --image scene.tif --out scene-gamma.tif",
@@ -71,6 +76,7 @@ struct options {
     struct radar_options radar;
     long seed;
     bool ignores_names;
+    struct db_strip_options strips;
 };
 
 static bool read_options(struct options *o, int argc, char **argv, int *exit_code)
@@ -92,7 +98,7 @@ static bool read_options(struct options *o, int argc, char **argv, int *exit_cod
          "The class raster, from `segment` or `correct`.", true},
         DB_CLASSES_OPTION(o->classes),
         DB_CLASS_NUMBERS_OPTION(o->ignores_names),
-        {"out", HS_OUTPUT, &o->out, 0, 0, "FILE", "Where the reflectivity raster goes.", true},
+        {"out", HS_OUTPUT, &o->out, 0, 0, "FILE", "Where the reflectivity raster goes.", false},
         {"sensor", HS_CHOICE, &o->sensor, 0, 0, HS_SENSOR_WORDS,
          "What the values are for: a radar at X, Ku, Ka band or millimetre waves, or thermal "
          "infrared.",
@@ -126,6 +132,9 @@ static bool read_options(struct options *o, int argc, char **argv, int *exit_cod
         {"picture", HS_OUTPUT, &o->picture, 0, 0, "FILE",
          "Also write a PNG, black at the lowest and white at the highest mean of the classes.",
          false},
+        DB_STRIP_OPTIONS(&o->strips),
+        HS_NEEDS_ROW("shards", "method=assign"),
+        HS_CLASHES_ROW("shards", "picture"),
         DB_IMAGE_OPTIONS(&o->image),
     };
     enum { COUNT = sizeof table / sizeof table[0] };
@@ -172,6 +181,8 @@ struct work {
     bool uses_band[HS_LIST_MAX * 8];
     int bands_used;
     struct db_raster_out out;
+    struct db_row_writer writer;
+    struct db_rows own; /* rows that are written */
     struct db_preview preview;
     struct pixel_places places;
     struct db_brightness brightness;
@@ -260,6 +271,18 @@ static int alloc_block(struct work *w)
     return 0;
 }
 
+static int create_output(struct work *w)
+{
+    const struct options *o = w->options;
+    const struct db_grid grid = db_strips_grid(&w->classes.grid, w->own);
+    if (db_raster_create(&w->out, o->out, &grid, GDT_Float32, NODATA_DB) != 0) {
+        return -1;
+    }
+    db_sensor_tag_write(&w->out, (enum hs_sensor)o->sensor);
+    db_strips_tag(&w->out, &o->strips);
+    return db_row_writer_init(&w->writer, &w->out);
+}
+
 static int prepare(struct work *w)
 {
     const struct options *o = w->options;
@@ -281,11 +304,19 @@ static int prepare(struct work *w)
     if (o->picture && db_preview_init(&w->preview, &w->classes.grid, 1) != 0) {
         return -1;
     }
-    if (db_raster_create(&w->out, o->out, &w->classes.grid, GDT_Float32, NODATA_DB) != 0) {
+    if (db_strips_rows(&o->strips, &w->classes.grid, &w->own) != 0) {
         return -1;
     }
-    db_sensor_tag_write(&w->out, sensor);
-    return 0;
+    return o->strips.plan ? 0 : create_output(w);
+}
+
+/* A pixel is drawn by its class and those of the pixels around it. */
+static int write_plan(const struct work *w)
+{
+    const struct db_raster *rasters[] = {&w->classes};
+    const char *plain[] = {w->options->classes};
+    const struct db_strip_sources sources = {rasters, 1, plain, 1, 1};
+    return db_strips_write_plan(&w->options->strips, &w->classes.grid, &sources);
 }
 
 static int read_patches(struct work *w)
@@ -473,18 +504,18 @@ static int reflect_block(struct work *w)
     if (w->options->picture) {
         db_preview_add(&w->preview, 0, b->y, b->rows, width, b->values, b->class_valid);
     }
-    return db_raster_write(&w->out, b->y, b->rows, b->values);
+    return db_row_writer_add(&w->writer, b->rows, b->values);
 }
 
 static int for_all_blocks(struct work *w, const char *label, int (*work_on)(struct work *))
 {
-    const int height = w->classes.grid.height;
+    const int end = w->own.end;
     struct block *b = &w->block;
     struct hs_progress progress;
-    hs_progress_begin(&progress, label, (uint64_t)height);
+    hs_progress_begin(&progress, label, (uint64_t)end);
     int result = 0;
-    for (b->y = 0; result == 0 && b->y < height; b->y += w->block_rows) {
-        b->rows = b->y + w->block_rows < height ? w->block_rows : height - b->y;
+    for (b->y = w->own.first; result == 0 && b->y < end; b->y += w->block_rows) {
+        b->rows = b->y + w->block_rows < end ? w->block_rows : end - b->y;
         result = read_block(w);
         if (result == 0) {
             result = work_on(w);
@@ -617,13 +648,18 @@ static int write_picture(const struct work *w)
 
 static int run(struct work *w)
 {
-    if (prepare(w) != 0 ||
-        (w->method != ASSIGN && for_all_blocks(w, "brightness", measure_block) != 0)) {
+    const double start = db_cost_seconds();
+    const bool is_ready = prepare(w) == 0;
+    if (is_ready && w->options->strips.plan) {
+        return write_plan(w) == 0 ? HS_EXIT_OK : HS_EXIT_FAILED;
+    }
+    if (!is_ready || (w->method != ASSIGN && for_all_blocks(w, "brightness", measure_block) != 0)) {
         db_raster_abort(&w->out);
         return HS_EXIT_FAILED;
     }
     find_scene_offset(w);
-    if (for_all_blocks(w, "reflect", reflect_block) != 0 || db_raster_commit(&w->out) != 0) {
+    if (for_all_blocks(w, "reflect", reflect_block) != 0 || db_row_writer_end(&w->writer) != 0 ||
+        db_raster_commit(&w->out) != 0) {
         db_raster_abort(&w->out);
         return HS_EXIT_FAILED;
     }
@@ -634,6 +670,9 @@ static int run(struct work *w)
     if (w->by_patch) {
         print_patches(w);
     }
+    hs_report_put("width_px", w->classes.grid.width);
+    hs_report_put("height_px", w->own.end - w->own.first);
+    db_cost_report(db_cost_seconds() - start);
     return write_picture(w) != 0 ? HS_EXIT_FAILED : HS_EXIT_OK;
 }
 
@@ -656,14 +695,17 @@ static const char *fault_of(const struct options *o, const char **option)
         return "takes radar imagery, which says nothing of the infrared; use assign or adjust";
     }
     *option = "--multilook";
-    return o->radar.multilook % 2 == 0 ? "must be odd" : NULL;
+    return o->radar.multilook % 2 == 0 ? "must be odd"
+                                       : db_strips_fault(&o->strips, o->out, option);
 }
 
 int db_cmd_reflect(int argc, char **argv)
 {
     hs_outputs_together();
     struct options options = {
-        .seed = 1, .radar = {.unit = -1, .band = 1, .multilook = 3, .incidence_deg = NAN}};
+        .seed = 1,
+        .strips = DB_STRIP_DEFAULTS,
+        .radar = {.unit = -1, .band = 1, .multilook = 3, .incidence_deg = NAN}};
     int exit_code;
     struct work *w = calloc(1, sizeof *w);
     if (!w) {
@@ -676,6 +718,7 @@ int db_cmd_reflect(int argc, char **argv)
         w->method = (enum method)options.method;
         exit_code = fault ? hs_options_wrong(&usage, option, fault) : run(w);
     }
+    db_row_writer_free(&w->writer);
     free(w->block.pixels);
     free(w->block.values);
     free(w->block.patches);

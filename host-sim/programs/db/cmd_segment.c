@@ -1,5 +1,6 @@
 /* landmass-db segment: an image and a trained network in, a class raster out. */
 #include "commands.h"
+#include "cost.h"
 #include "source_options.h"
 
 #include "classify/confusion.h"
@@ -13,6 +14,7 @@
 #include "gis/gdal_start.h"
 #include "gis/preview.h"
 #include "gis/sieve.h"
+#include "gis/strips.h"
 #include "hs/atomic_file.h"
 #include "hs/error.h"
 #include "hs/png.h"
@@ -43,6 +45,7 @@ static const struct hs_usage usage = {
         "for `landmass-db correct`. With "
         "exemplars\n"
         "given, --report lists the polygons and the squares of the image that came out worst.\n\n"
+        "A large image is made in strips (--shards, --shard), on whatever machine.\n\n"
         "Example:\n"
         "  landmass-db segment --image scene.tif --classes heaton6.classes --net scene.net \\\n"
         "      --out scene-classes.tif --picture scene-classes.png",
@@ -57,6 +60,7 @@ struct options {
     double sure, mixtures, sieve;
     struct hs_list picture_bands, spare;
     long square;
+    struct db_strip_options strips;
 };
 
 static bool read_options(struct options *o, int argc, char **argv, int *exit_code)
@@ -66,7 +70,7 @@ static bool read_options(struct options *o, int argc, char **argv, int *exit_cod
         {"classes", HS_INPUT, &o->classes, 0, 0, "FILE",
          "The class table the network was trained with.", true},
         {"net", HS_INPUT, &o->net, 0, 0, "FILE", "The network, from `landmass-db train`.", true},
-        {"out", HS_OUTPUT, &o->out, 0, 0, "FILE", "Where the class raster goes.", true},
+        {"out", HS_OUTPUT, &o->out, 0, 0, "FILE", "Where the class raster goes.", false},
         {"picture", HS_OUTPUT, &o->picture, 0, 0, "FILE",
          "Also write a PNG: the image on the left, its classes on the right; at most 1024 "
          "pixels each\n"
@@ -109,6 +113,8 @@ static bool read_options(struct options *o, int argc, char **argv, int *exit_cod
         DB_EXEMPLAR_OPTIONS(&o->known),
         {"square", HS_INTEGER, &o->square, 4, 4096, "N",
          "Side in pixels of the squares of the report.", false},
+        DB_STRIP_OPTIONS(&o->strips),
+        HS_CLASHES_ROW("shards", "picture|report"),
         HS_NEEDS_ROW("picture-bands", "picture"),
         HS_NEEDS_ROW("sure", "reject"),
         HS_NEEDS_ROW("report", "exemplars|labels"),
@@ -123,6 +129,12 @@ static bool read_options(struct options *o, int argc, char **argv, int *exit_cod
     return hs_options_read(&usage, table, sizeof table / sizeof table[0], argc, argv, exit_code);
 }
 
+/* Classes on their way: some rows of the raster, in a file of their own. */
+struct step {
+    struct db_raster_out file;
+    struct db_rows rows;
+};
+
 struct work {
     const struct options *options;
     struct db_class_table table;
@@ -134,8 +146,12 @@ struct work {
     struct db_raster image;
     /* As the network says, with mixtures resolved, and as the sieve leaves it. Without the rule
      * `settled` is not used. */
-    struct db_raster_out raw, settled, out;
-    const struct db_raster_out *before_sieve; /* one of them */
+    struct step raw, settled;
+    struct db_raster_out out;
+    struct db_row_writer writer;
+    const struct step *before_sieve; /* one of them */
+    struct db_rows own, sieved;      /* rows that are written; those that the sieve sees */
+    uint8_t *band, *before;          /* owned: rows in the sieve, and those of them before it */
     struct db_mixtures mixtures;
     int speck_pixels; /* regions of fewer are specks */
     bool is_spared[DB_CLASS_MAX];
@@ -147,7 +163,7 @@ struct work {
     int shown_count;
     uint64_t counts[256];  /* pixels of each class by the network, without those rejected */
     uint64_t written[256]; /* pixels of each class in the raster */
-    uint64_t rejected, resolved, sieved;
+    uint64_t rejected, resolved, sieved_pixels;
     double seconds; /* of the network alone */
 };
 
@@ -240,17 +256,54 @@ static int find_spared(struct work *w)
 
 /* A raster of its own name, for classes on their way: two under the name of the result would be
  * written into one file. */
-static int create_step(const struct work *w, struct db_raster_out *step, const char *name)
+static int create_step(const struct work *w, struct step *step, struct db_rows rows,
+                       const char *name)
 {
     const size_t size = strlen(w->options->out) + strlen(name) + 2;
+    const struct db_grid grid = db_strips_grid(&w->image.grid, rows);
     char *path = malloc(size);
     if (!path) {
         return hs_error(w->options->out, NULL, "out of memory");
     }
     snprintf(path, size, "%s.%s", w->options->out, name);
-    const int result = db_class_raster_create(step, path, &w->image.grid, &w->table);
+    step->rows = rows;
+    const int result = db_class_raster_create(&step->file, path, &grid, &w->table);
     free(path);
     return result;
+}
+
+static int create_outputs(struct work *w)
+{
+    const struct options *o = w->options;
+    const struct db_grid *whole = &w->image.grid;
+    const struct db_grid own = db_strips_grid(whole, w->own);
+    const int halo = o->mixtures > 0 ? DB_MIXTURES_HALO : 0;
+    w->before_sieve = halo ? &w->settled : &w->raw;
+    if (halo && (db_mixtures_init(&w->mixtures, &w->net, o->mixtures) != 0 ||
+                 create_step(w, &w->settled, w->sieved, "mixtures") != 0)) {
+        return -1;
+    }
+    if (create_step(w, &w->raw, db_rows_around(w->sieved, halo, whole), "network") != 0 ||
+        db_class_raster_create(&w->out, o->out, &own, &w->table) != 0) {
+        return -1;
+    }
+    db_strips_tag(&w->out, &o->strips);
+    return db_row_writer_init(&w->writer, &w->out);
+}
+
+/* Rows on either side that a pixel's class depends on. */
+static int reach_of(const struct work *w)
+{
+    return db_sieve_margin(w->speck_pixels) + (w->options->mixtures > 0 ? DB_MIXTURES_HALO : 0) +
+           w->net.context / 2;
+}
+
+static int write_plan(const struct work *w)
+{
+    const struct db_raster *rasters[] = {&w->image};
+    const char *plain[] = {w->options->classes, w->options->net};
+    const struct db_strip_sources sources = {rasters, 1, plain, 2, reach_of(w)};
+    return db_strips_write_plan(&w->options->strips, &w->image.grid, &sources);
 }
 
 static int prepare(struct work *w)
@@ -275,15 +328,11 @@ static int prepare(struct work *w)
         return -1;
     }
     w->speck_pixels = db_sieve_pixels(&w->image.grid, o->sieve);
-    w->before_sieve = o->mixtures > 0 ? &w->settled : &w->raw;
-    if (o->mixtures > 0 && (db_mixtures_init(&w->mixtures, &w->net, o->mixtures) != 0 ||
-                            create_step(w, &w->settled, "mixtures") != 0)) {
+    if (db_strips_rows(&o->strips, &w->image.grid, &w->own) != 0) {
         return -1;
     }
-    return create_step(w, &w->raw, "network") != 0 ||
-                   db_class_raster_create(&w->out, o->out, &w->image.grid, &w->table) != 0
-               ? -1
-               : 0;
+    w->sieved = db_rows_around(w->own, db_sieve_margin(w->speck_pixels), &w->image.grid);
+    return o->strips.plan ? 0 : create_outputs(w);
 }
 
 struct block {
@@ -348,19 +397,19 @@ static int segment_block(struct work *w, const struct block *b)
     }
     classify(w, b);
     keep_original(w, b);
-    return db_raster_write(&w->raw, b->y, b->rows, b->classes);
+    return db_raster_write(&w->raw.file, b->y - w->raw.rows.first, b->rows, b->classes);
 }
 
 /* Take rows from a raster that is being written. */
-static int read_back(const struct work *w, const struct db_raster_out *from, int y, int rows,
+static int read_back(const struct work *w, const struct step *from, int y, int rows,
                      uint8_t *classes)
 {
     const int width = w->image.grid.width;
     CPLErrorReset();
-    if (GDALRasterIO(GDALGetRasterBand(from->dataset, 1), GF_Read, 0, y, width, rows, classes,
-                     width, rows, GDT_Byte, 0, 0) != CE_None) {
-        return hs_error(from->path, "free some space and run again", "cannot be read again: %s",
-                        db_gdal_complaint());
+    if (GDALRasterIO(GDALGetRasterBand(from->file.dataset, 1), GF_Read, 0, y - from->rows.first,
+                     width, rows, classes, width, rows, GDT_Byte, 0, 0) != CE_None) {
+        return hs_error(from->file.path, "free some space and run again",
+                        "cannot be read again: %s", db_gdal_complaint());
     }
     return 0;
 }
@@ -386,20 +435,23 @@ static int resolve_block(struct work *w, const struct block *b)
         return -1;
     }
     w->resolved += db_mixtures_resolve(&w->mixtures, &m, b->reject);
-    return db_raster_write(&w->settled, b->y, b->rows, b->reject);
+    return db_raster_write(&w->settled.file, b->y - w->settled.rows.first, b->rows, b->reject);
 }
 
 /* ---- the sieve ---- */
 
-/* The rows of the block as they are, and those around them. */
-static struct db_specks_block around(const struct work *w, const struct block *b)
+/* The rows of the block as they are, and those around them. The band that was sieved, `seen`, has
+ * more than those on either side. */
+static struct db_specks_block around(const struct work *w, const struct block *b,
+                                     struct db_rows seen)
 {
     const int top = b->y > DB_SPECKS_HALO ? b->y - DB_SPECKS_HALO : 0;
     const int wanted = b->y + b->rows + DB_SPECKS_HALO;
     const int bottom = wanted < w->image.grid.height ? wanted : w->image.grid.height;
+    const size_t from = (size_t)(top - seen.first) * (size_t)w->image.grid.width;
     return (struct db_specks_block){.planes = b->planes,
-                                    .before = b->reject,
-                                    .after = b->classes,
+                                    .before = w->before + from,
+                                    .after = w->band + from,
                                     .width = w->image.grid.width,
                                     .rows = bottom - top,
                                     .first = b->y - top,
@@ -417,26 +469,20 @@ static bool has_specks(const struct work *w, const struct db_specks_block *s)
     return false;
 }
 
-/* `classes` becomes what is written, of the block's rows alone. The rows above are those that the
- * sieve left or a block before wrote: specks are told by them all the same, as no pixel of a speck
- * takes the class that it had. */
-static int settle_specks(struct work *w, const struct block *b)
+/* `classes` becomes what is written. */
+static int settle_specks(struct work *w, const struct block *b, struct db_rows seen)
 {
-    const struct db_specks_block s = around(w, b);
-    const int top = b->y - s.first;
+    const struct db_specks_block s = around(w, b, seen);
     const size_t count = (size_t)b->rows * (size_t)s.width;
-    if (read_back(w, w->before_sieve, top, s.rows, b->reject) != 0 ||
-        read_back(w, &w->out, top, s.rows, b->classes) != 0 ||
-        (has_specks(w, &s) && db_raster_read(&w->image, top, s.rows, b->planes, b->valid) != 0)) {
+    if (has_specks(w, &s) &&
+        db_raster_read(&w->image, b->y - s.first, s.rows, b->planes, b->valid) != 0) {
         return -1;
     }
-    w->sieved += db_specks_settle(&w->net, w->is_spared, &s, b->valid);
-    const bool is_new = memcmp(b->valid, s.after + (size_t)s.first * (size_t)s.width, count) != 0;
-    memcpy(b->classes, b->valid, count);
+    w->sieved_pixels += db_specks_settle(&w->net, w->is_spared, &s, b->classes);
     for (size_t i = 0; i < count; i++) {
         w->written[b->classes[i]]++;
     }
-    return is_new ? db_raster_write(&w->out, b->y, b->rows, b->classes) : 0;
+    return 0;
 }
 
 static void keep_classes(struct work *w, const struct block *b)
@@ -452,13 +498,56 @@ static void keep_classes(struct work *w, const struct block *b)
     }
 }
 
-static int finish_block(struct work *w, const struct block *b)
+/* A block of the band that was sieved, `seen`. */
+static int finish_block(struct work *w, const struct block *b, struct db_rows seen)
 {
-    if (settle_specks(w, b) != 0) {
+    if (settle_specks(w, b, seen) != 0) {
         return -1;
     }
     keep_classes(w, b);
-    return 0;
+    return db_row_writer_add(&w->writer, b->rows, b->classes);
+}
+
+/* Rows that are sieved together; the blocks of the band have at most `b->rows` rows. */
+static int finish_band(struct work *w, struct block *b, struct db_rows band)
+{
+    const int most = b->rows;
+    const struct db_rows seen =
+        db_rows_around(band, db_sieve_margin(w->speck_pixels), &w->image.grid);
+    const int rows = seen.end - seen.first, width = w->image.grid.width;
+    if (read_back(w, w->before_sieve, seen.first, rows, w->band) != 0) {
+        return -1;
+    }
+    memcpy(w->before, w->band, (size_t)rows * (size_t)width);
+    int result = db_sieve(w->band, width, rows, w->speck_pixels, w->options->out);
+    for (b->y = band.first; result == 0 && b->y < band.end; b->y += most) {
+        b->rows = b->y + most < band.end ? most : band.end - b->y;
+        result = finish_block(w, b, seen);
+    }
+    b->rows = most;
+    return result;
+}
+
+static int finish(struct work *w, struct block *b, int rows)
+{
+    const size_t width = (size_t)w->image.grid.width;
+    const size_t margin = (size_t)db_sieve_margin(w->speck_pixels);
+    w->band = malloc((DB_SIEVE_ROWS + 2 * margin) * width);
+    w->before = malloc((DB_SIEVE_ROWS + 2 * margin) * width);
+    if (!w->band || !w->before) {
+        return hs_error(w->options->out, NULL, "out of memory");
+    }
+    struct hs_progress progress;
+    hs_progress_begin(&progress, "sieve", (uint64_t)(w->own.end - w->own.first));
+    int result = 0;
+    b->rows = rows;
+    for (int y = w->own.first; result == 0 && y < w->own.end; y += DB_SIEVE_ROWS) {
+        const int end = y + DB_SIEVE_ROWS < w->own.end ? y + DB_SIEVE_ROWS : w->own.end;
+        result = finish_band(w, b, (struct db_rows){y, end});
+        hs_progress_update(&progress, (uint64_t)(end - w->own.first));
+    }
+    hs_progress_end(&progress);
+    return result == 0 ? db_row_writer_end(&w->writer) : result;
 }
 
 static void free_block(struct block *b)
@@ -487,19 +576,59 @@ static int alloc_block(const struct work *w, struct block *b, size_t count)
     return hs_error(w->image.name, NULL, "out of memory");
 }
 
-/* Call `work` with each block of rows. */
-static int for_all_blocks(struct work *w, struct block *b, const char *label, int rows,
-                          int (*work)(struct work *w, const struct block *b))
+/* What the report counts. */
+struct counted {
+    struct db_judge judge;
+    uint64_t counts[256], rejected, resolved;
+};
+
+static struct counted counted_so_far(const struct work *w)
 {
-    const struct db_grid *grid = &w->image.grid;
-    struct hs_progress progress;
-    hs_progress_begin(&progress, label, (uint64_t)grid->height);
+    struct counted c = {.judge = w->judge, .rejected = w->rejected, .resolved = w->resolved};
+    memcpy(c.counts, w->counts, sizeof c.counts);
+    return c;
+}
+
+static void count_as(struct work *w, const struct counted *c)
+{
+    w->judge = c->judge;
+    w->rejected = c->rejected;
+    w->resolved = c->resolved;
+    memcpy(w->counts, c->counts, sizeof w->counts);
+}
+
+struct pass {
+    const char *label;
+    int rows; /* of a block, at most */
+    int (*work)(struct work *w, const struct block *b);
+};
+
+static int for_blocks(struct work *w, struct block *b, const struct pass *pass, struct db_rows part,
+                      struct hs_progress *progress)
+{
     int result = 0;
-    for (b->y = 0; result == 0 && b->y < grid->height; b->y += rows) {
-        b->rows = b->y + rows < grid->height ? rows : grid->height - b->y;
-        result = work(w, b);
-        hs_progress_update(&progress, (uint64_t)(b->y + b->rows));
+    for (b->y = part.first; result == 0 && b->y < part.end; b->y += pass->rows) {
+        b->rows = b->y + pass->rows < part.end ? pass->rows : part.end - b->y;
+        result = pass->work(w, b);
+        hs_progress_update(progress, (uint64_t)(b->y + b->rows));
     }
+    return result;
+}
+
+/* Call the pass with each block of the rows. Only own rows are counted. */
+static int for_all_blocks(struct work *w, struct block *b, const struct pass *pass,
+                          struct db_rows rows)
+{
+    struct hs_progress progress;
+    hs_progress_begin(&progress, pass->label, (uint64_t)rows.end);
+    const struct db_rows before = {rows.first, w->own.first}, behind = {w->own.end, rows.end};
+    const struct counted nothing = counted_so_far(w);
+    int result = for_blocks(w, b, pass, before, &progress);
+    count_as(w, &nothing);
+    result = result == 0 ? for_blocks(w, b, pass, w->own, &progress) : result;
+    const struct counted own = counted_so_far(w);
+    result = result == 0 ? for_blocks(w, b, pass, behind, &progress) : result;
+    count_as(w, &own);
     hs_progress_end(&progress);
     return result;
 }
@@ -510,19 +639,18 @@ static int segment(struct work *w)
     const size_t bytes = db_feature_bytes(w->image.band_count, w->net.context) + 2 + sizeof(float);
     const int rows = db_raster_block_rows(grid, bytes);
     const size_t held = (size_t)rows + 2 * DB_MIXTURES_HALO;
+    const struct pass network = {"segment", rows, segment_block};
+    const struct pass mixtures = {"mixtures", rows, resolve_block};
     struct block b;
     if (alloc_block(w, &b, held * (size_t)grid->width) != 0) {
         return -1;
     }
-    int result = for_all_blocks(w, &b, "segment", rows, segment_block);
+    int result = for_all_blocks(w, &b, &network, w->raw.rows);
     if (result == 0 && w->options->mixtures > 0) {
-        result = for_all_blocks(w, &b, "mixtures", rows, resolve_block);
+        result = for_all_blocks(w, &b, &mixtures, w->settled.rows);
     }
     if (result == 0) {
-        result = db_sieve(&w->out, w->before_sieve, w->speck_pixels);
-    }
-    if (result == 0) {
-        result = for_all_blocks(w, &b, "write", rows, finish_block);
+        result = finish(w, &b, rows);
     }
     free_block(&b);
     return result;
@@ -580,9 +708,9 @@ static void print_counts(struct work *w)
            (unsigned long long)w->resolved);
     hs_report_put("mixtures", w->resolved);
     printf("sieve: %llu pixels took the class around them, in regions of fewer than %d pixels\n",
-           (unsigned long long)w->sieved, w->speck_pixels);
+           (unsigned long long)w->sieved_pixels, w->speck_pixels);
     hs_report_object("sieve");
-    hs_report_put("pixels", w->sieved);
+    hs_report_put("pixels", w->sieved_pixels);
     hs_report_put("speck_pixels", w->speck_pixels);
     hs_report_close();
     db_judge_report(&w->judge, w->image.name, &w->table, w->counts);
@@ -602,20 +730,27 @@ static void print_counts(struct work *w)
 
 static int run(struct work *w)
 {
-    const bool is_written = prepare(w) == 0 && segment(w) == 0 && db_raster_commit(&w->out) == 0;
-    db_raster_abort(&w->raw);
-    db_raster_abort(&w->settled);
+    const double start = db_cost_seconds();
+    const bool is_ready = prepare(w) == 0;
+    if (is_ready && w->options->strips.plan) {
+        return write_plan(w) == 0 ? HS_EXIT_OK : HS_EXIT_FAILED;
+    }
+    const bool is_written = is_ready && segment(w) == 0 && db_raster_commit(&w->out) == 0;
+    db_raster_abort(&w->raw.file);
+    db_raster_abort(&w->settled.file);
     if (!is_written) {
         db_raster_abort(&w->out);
         return HS_EXIT_FAILED;
     }
     print_counts(w);
     hs_report_put("width_px", w->image.grid.width);
-    hs_report_put("height_px", w->image.grid.height);
+    hs_report_put("height_px", w->own.end - w->own.first);
     hs_report_put("network_s", w->seconds);
-    const double megapixels = 1e-6 * (double)w->image.grid.width * (double)w->image.grid.height;
+    const double megapixels =
+        1e-6 * (double)w->image.grid.width * (double)(w->raw.rows.end - w->raw.rows.first);
     printf("network: %.2f Mpixel in %.3f s on one core, %.1f Mpixel/s\n", megapixels, w->seconds,
            megapixels / w->seconds);
+    db_cost_report(db_cost_seconds() - start);
     return write_picture(w) != 0 || write_report(w) != 0 ? HS_EXIT_FAILED : HS_EXIT_OK;
 }
 
@@ -626,7 +761,8 @@ int db_cmd_segment(int argc, char **argv)
                               .square = 64,
                               .sure = 0.5,
                               .mixtures = DB_MIXTURES_TOLERANCE,
-                              .sieve = 60};
+                              .sieve = 60,
+                              .strips = DB_STRIP_DEFAULTS};
     int exit_code;
     struct work *w = calloc(1, sizeof *w);
     if (!w) {
@@ -635,8 +771,12 @@ int db_cmd_segment(int argc, char **argv)
     }
     w->options = &options;
     if (read_options(&options, argc, argv, &exit_code)) {
-        exit_code = run(w);
+        const char *option, *fault = db_strips_fault(&options.strips, options.out, &option);
+        exit_code = fault ? hs_options_wrong(&usage, option, fault) : run(w);
     }
+    db_row_writer_free(&w->writer);
+    free(w->band);
+    free(w->before);
     db_preview_free(&w->original);
     db_preview_free(&w->classes);
     db_exemplars_free(&w->exemplars);

@@ -6,6 +6,7 @@
 int db_cmd_import(int argc, char **argv);
 int db_cmd_train(int argc, char **argv);
 int db_cmd_segment(int argc, char **argv);
+int db_cmd_mosaic(int argc, char **argv);
 int db_cmd_correct(int argc, char **argv);
 int db_cmd_vectors(int argc, char **argv);
 int db_cmd_reflect(int argc, char **argv);

@@ -12,6 +12,7 @@ static const struct hs_command commands[] = {
     {"vectors", "make classes, heights and detail of OpenStreetMap or other vectors",
      db_cmd_vectors},
     {"reflect", "give each pixel its radar reflectivity", db_cmd_reflect},
+    {"mosaic", "put strips of a raster together", db_cmd_mosaic},
     {"infrared", "make thermal pictures of a class raster at hours of a day", db_cmd_infrared},
     {"build", "make the database image from classes, reflectivity and terrain", db_cmd_build},
     {"plan", "cut an image into shards that are made apart", db_cmd_plan},

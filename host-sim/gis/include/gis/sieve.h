@@ -11,10 +11,19 @@
  * pixel is no speck, or the grid does not say how large a pixel is. */
 int db_sieve_pixels(const struct db_grid *grid, double speck_m2);
 
-/* Write the classes of `from` into `to`, which has the same grid, without components of fewer than
- * `pixels` pixels: they take the class of their largest neighbour. Pixels without data stay so, and
- * are nobody's neighbours. Both are being written. Memory grows with the components. Returns 0, or
- * -1 with the error reported. */
-int db_sieve(struct db_raster_out *to, const struct db_raster_out *from, int pixels);
+/* Rasters are sieved in bands of so many rows, each with a margin on either side, so that memory is
+ * bounded and a raster that is made in strips (gis/strips.h) comes out as one that is not. What is
+ * a speck is exact. Which neighbour is the largest is told by the pixels within the margin. */
+enum { DB_SIEVE_ROWS = 1024 };
+
+/* Rows of the margin: 0 without a sieve, else at least 256 and four times `pixels`. A component
+ * that reaches from a band beyond its margin has more pixels than a speck in the margin alone, and
+ * so has a speck's neighbour. */
+int db_sieve_margin(int pixels);
+
+/* Take components of fewer than `pixels` pixels out of rows * width classes: they get the class of
+ * their largest neighbour. Pixels without data stay so, and are nobody's neighbours. `name` is for
+ * messages. Memory: some 24 bytes a component. Returns 0, or -1 with the error reported. */
+int db_sieve(uint8_t *classes, int width, int rows, int pixels, const char *name);
 
 #endif

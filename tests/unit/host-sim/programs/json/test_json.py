@@ -321,6 +321,17 @@ def db_reflect():
                    for key, i in (("mean_db", 2), ("spread_db", 4), ("least_db", 6), ("greatest_db", 7)))
 
 
+def db_mosaic():
+    strip = here("strip.tif")
+    run("db", "reflect", "--class-raster", here("scene/truth.tif"), "--classes", CLASSES, "--shards", "1", "--shard", "0", "--out", strip)
+    document, text = run("db", "mosaic", "--strip", strip, "--out", here("mosaic.tif"))
+    width, height, strips = find(r"mosaic.tif: (\d+) x (\d+) pixels of (\d+) strips$", text)
+    r = document["report"]
+    assert (r["width_px"], r["height_px"], r["strips"]) == (width, height, strips) == (512, 512, 1)
+    took = find(r"^done in ([\d.]+) s, ([\d.]+) s of a processor, (\d+) MiB$", text)
+    assert all(near(r[key], shown, step) for key, shown, step in zip(("seconds", "processor_s", "memory_mib"), took, (0.1, 0.1, 1)))
+
+
 def db_infrared():
     document, text = run("db", "infrared", "--class-raster", here("scene/truth.tif"), "--classes", CLASSES, "--hours", "4,14",
                          "--out", here("infrared"))
@@ -938,7 +949,7 @@ def the_document_lists_every_command():
 
 # In this order: some read what others wrote.
 CHECKS = {"db import": db_import, "db train": db_train, "db segment": db_segment, "db correct": db_correct,
-          "db vectors": db_vectors, "db reflect": db_reflect, "db infrared": db_infrared,
+          "db vectors": db_vectors, "db reflect": db_reflect, "db mosaic": db_mosaic, "db infrared": db_infrared,
           "db build": db_build, "db plan": db_plan, "db join": db_join, "db inspect": db_inspect, "db convert": db_convert, "db sign": db_sign, "db verify": db_verify, "db qgis": db_qgis, "db export": db_export,
           "db picture": db_picture, "scene": scene, "nav": nav, "dis": dis, "ios": ios, "bus decode": bus_decode, "bus fields": bus_fields,
           "bus table": bus_table, "bus dbc": bus_dbc, "bus filters": bus_filters, "bus reports": bus_reports,
