@@ -62,7 +62,7 @@ def free_port(count):
 
 class Cluster:
     def __init__(self, folder, nodes):
-        self.folder = folder
+        self.folder, self.nodes = folder, nodes
         os.makedirs(folder + "/state")
         port = free_port(nodes + 1)
         host = socket.gethostname().split(".")[0]
@@ -140,6 +140,11 @@ class Cluster:
             except OSError:
                 pass
         self.run("scontrol", "update", "NodeName=" + name, "State=DOWN", "Reason=killed")
+
+    def start_node(self, name):
+        """A node that died comes back (ReturnToService)."""
+        self.run("slurmd", "-N", name)
+        self.wait_for("idle", self.nodes)
 
     def told(self):
         """What Slurm says: nodes, queue and the ends of its logs."""

@@ -14,8 +14,11 @@ import sys
 import tempfile
 import time
 
+from osgeo import gdal
+
 import cluster
 
+gdal.UseExceptions()
 BUILD = os.path.abspath(os.environ.get("BUILD", "build/bench-linux"))
 TOP = os.path.abspath(".")
 WORLD = TOP + "/host-sim/world"
@@ -37,11 +40,11 @@ def skip(name, why):
     print("ok %d - %s # SKIP\n# skipped: %s" % (len(CHECKS), name, why), flush=True)
 
 
-def start(*words, db=None, environment=None, shards=6, retries=2):
+def start(*words, db=None, environment=None, shards=6, retries=2, options=OPTIONS, config=()):
     """The workflow; its messages go to engine.log. CI=true: Snakemake looks at a cluster's steps each second, not each ten."""
     command = ["snakemake", "-s", WORLD + "/Snakefile", "--nolock", "--rerun-triggers", "mtime", "--rerun-incomplete", *words,
-               "--config", "db=" + (db or BUILD + "/bin/landmass-db"), "options=" + OPTIONS, "out=world.lmdb", "work=work", "shards=%d" % shards,
-               "retries=%d" % retries]
+               "--config", "db=" + (db or BUILD + "/bin/landmass-db"), "options=" + options, "out=world.lmdb", "work=work", "shards=%d" % shards,
+               "retries=%d" % retries, *config]
     return subprocess.Popen(command, stdin=subprocess.DEVNULL, stdout=open("engine.log", "w"), stderr=subprocess.STDOUT,
                             env=dict(environment or os.environ, CI="true"), start_new_session=True)
 
@@ -138,6 +141,81 @@ def on_this_machine(whole):
           and "could not be made" in log() and not parts(), log())
 
 
+def landmass(*words):
+    subprocess.run([BUILD + "/bin/landmass-db", *words], check=True, capture_output=True)
+
+
+def tall_image():
+    """A virtual raster of three files, each three pictures of the scene, one above the other; and a network for it."""
+    picture = gdal.Open("scene/image.tif")
+    bands, rows = picture.ReadAsArray(), picture.RasterYSize
+    for number, name in enumerate(("north.tif", "middle.tif", "south.tif")):
+        file = gdal.GetDriverByName("GTiff").Create(name, picture.RasterXSize, 3 * rows, picture.RasterCount, gdal.GDT_UInt16)
+        west, step, _, north, _, _ = picture.GetGeoTransform()
+        file.SetGeoTransform((west, step, 0, north - 3 * rows * step * number, 0, -step))
+        file.SetProjection(picture.GetProjection())
+        for band in range(picture.RasterCount):
+            for k in range(3):
+                file.GetRasterBand(band + 1).WriteArray(bands[band][::-1] if (number + k) % 2 else bands[band], 0, k * rows)
+        del file
+    gdal.BuildVRT("image.vrt", ["north.tif", "middle.tif", "south.tif"]).FlushCache()
+    landmass("train", "--image", "scene/image.tif", "--exemplars", "scene/exemplars.geojson", "--classes", CLASSES, "--net", "scene.net",
+             "--epochs", "40", "--context", "3")
+
+
+def raster_states():
+    return {"%s/%d" % (kind, k): os.stat("work/%s/%d.tif" % (kind, k)).st_mtime_ns for kind in ("classes", "gamma") for k in range(3)}
+
+
+def rasters():
+    """Classes and reflectivity as steps of the workflow."""
+    clean()
+    tall_image()
+    options = "--classes %s --flat --seed 3" % CLASSES
+    segment = ["--image", "image.vrt", "--classes", CLASSES, "--net", "scene.net"]
+    run = {"options": options, "shards": 8, "config": ["strips=3", "segment=" + " ".join(segment), "reflect=--classes " + CLASSES]}
+
+    def is_right():
+        landmass("segment", *segment, "--out", "classes.tif")
+        landmass("reflect", "--class-raster", "classes.tif", "--classes", CLASSES, "--out", "gamma.tif")
+        for kind in ("classes", "gamma"):
+            strips = [word for k in (2, 0, 1) for word in ("--strip", "work/%s/%d.tif" % (kind, k))]
+            landmass("mosaic", *strips, "--out", kind + "-joined.tif")
+        landmass("build", *options.split(), "--class-raster", "work/classes.vrt", "--reflectivity", "work/gamma.vrt", "--out", "whole2.lmdb")
+        return [digest(kind + "-joined.tif") == digest(kind + ".tif") for kind in ("classes", "gamma")] \
+            + [digest("world.lmdb") == digest("whole2.lmdb")]
+
+    done = ended(start("-j2", "world.lmdb", **run))
+    right = is_right() if done == 0 else []
+    check("classes and reflectivity in strips: the rasters and the image are the bytes of runs in one go", right == [True] * 3,
+          "%s, %s\n%s" % (done, right, log()))
+    if done != 0:
+        return
+    states, made = raster_states(), parts()
+    done = ended(start("-j2", "world.lmdb", **run))
+    check("run again, they have nothing to do", done == 0 and "Nothing to be done" in log() and states == raster_states(), log())
+    file = gdal.Open("south.tif", gdal.GA_Update)
+    for band in range(1, file.RasterCount + 1):
+        values = file.GetRasterBand(band).ReadAsArray()
+        file.GetRasterBand(band).WriteArray(values[:300, ::-1].copy(), 0, 460)
+    del file, values
+    os.utime("south.tif")
+    done = ended(start("-j2", "world.lmdb", **run))
+    again = sorted(name for name, when in raster_states().items() if states[name] != when)
+    keys = [line.split()[-1] + ".part" for line in open("work/image.plan") if line.startswith("shard ")]
+    kept = [name for name in keys if name in made and parts()[name] == made[name]]
+    right = is_right() if done == 0 else []
+    check("a changed source: its strips are made again, and the shards that they reach into",
+          done == 0 and "classes/2" in again and "classes/0" not in again and 0 < len(kept) < len(keys),
+          "%s; %d of %d parts kept\n%s" % (again, len(kept), len(keys), log()))
+    print("# made again: %s; parts kept: %d of %d" % (" ".join(again), len(kept), len(keys)))
+    check("and all is again the bytes of runs in one go", right == [True] * 3, str(right))
+    with open("south.tif", "r+b") as file:
+        file.truncate(os.path.getsize("south.tif") // 2)
+    done = ended(start("-j1", "world.lmdb", **{**run, "retries": 0}))
+    check("a torn source is a plain refusal that names file and strip", done != 0 and "of the classes" in log() and "south.tif" in log(), log())
+
+
 def on_slurm(whole):
     nodes = cluster.Cluster(os.path.abspath("cluster"), 2)
     engine = None
@@ -158,6 +236,8 @@ def on_slurm(whole):
         report = open("work/report.txt").read() if os.path.exists("work/report.txt") else "there is no report"
         check("the report says so", "4 shards, 1 of them tried again" in report, report)
         print("# " + report.strip().replace("\n", "\n# "))
+        nodes.start_node("n2")
+        faults_on_slurm(nodes, whole)
     except (OSError, subprocess.TimeoutExpired) as error:
         check("a cluster of two nodes", False, "%s\n%s" % (error, nodes.told()))
     finally:
@@ -165,6 +245,42 @@ def on_slurm(whole):
             os.killpg(engine.pid, signal.SIGKILL)
             engine.wait()
         nodes.end()
+
+
+def faults_on_slurm(nodes, whole):
+    """What fails on a node is told by its cause and its shard, and leaves no image; without it the world is made."""
+    cluster_run = {"environment": nodes.environment, "shards": 4}
+
+    def run(db=None, retries=0):
+        return ended(start("--profile", WORLD + "/slurm", "world.lmdb", db=db, retries=retries, **cluster_run))
+
+    for what, limits, words in (("a full disk", "trap '' XFSZ; ulimit -f 300", ("could not be made",)),
+                                ("a shard that runs out of memory", "export OPENBLAS_NUM_THREADS=1; ulimit -v 285000",
+                                 ("out of memory", "could not be made"))):
+        clean()
+        done = run(other_db("poor", limits))
+        check("on the cluster: %s is a plain refusal that names the shard" % what, done not in (0, None) and "shard" in log() and all(
+            word in log() for word in words) and not os.path.exists("world.lmdb"), log()[-3000:] + nodes.told())
+    os.unlink("go")
+    clean()
+    shutil.copy("scene/terrain.tif", "terrain.kept")
+    engine = start("--profile", WORLD + "/slurm", "world.lmdb", db=other_db("held", "until [ -e %s/go ]; do sleep 0.1; done" % os.getcwd()),
+                   retries=0, **cluster_run)
+    is_busy = wait_for(engine, lambda: len(tries()) >= 2)
+    with open("scene/terrain.tif", "r+b") as file:
+        file.truncate(os.path.getsize("scene/terrain.tif") // 2)
+    open("go", "w").close()
+    done = ended(engine)
+    check("on the cluster: an input that is torn in the middle is named, with the shard", is_busy and done not in (0, None) and
+          "terrain.tif" in log() and "could not be made" in log() and not os.path.exists("world.lmdb"), log()[-3000:] + nodes.told())
+    done = run()
+    check("and one that is torn at the start, too", done not in (0, None) and "terrain.tif" in log() and not os.path.exists("world.lmdb"),
+          log()[-3000:])
+    shutil.copy2("terrain.kept", "scene/terrain.tif")
+    os.utime("scene/terrain.tif")
+    done = run(retries=2)
+    check("on the cluster: with a sound input it goes on, and the image is right", done == 0 and digest("world.lmdb") == whole,
+          log()[-3000:] + nodes.told())
 
 
 def coasts():
@@ -199,6 +315,7 @@ def main():
             subprocess.run([BUILD + "/bin/landmass-db", "build", *OPTIONS.split(), "--out", "whole.lmdb"], check=True, capture_output=True)
             whole = digest("whole.lmdb")
             on_this_machine(whole)
+            rasters()
             missing = cluster.why_not()
             if missing:
                 skip("two nodes of Slurm", missing)
