@@ -240,6 +240,41 @@ TEST(an_image_that_is_refused_is_told_and_the_others_are_flown)
     end(w);
 }
 
+static bool fetch_unless_gone(void *to, const uint8_t *from, uint32_t length)
+{
+    const bool is_gone = from >= forbidden_from && from < forbidden_to;
+    memcpy(to, from, is_gone ? 0 : length);
+    return !is_gone;
+}
+
+/* The first image stays mounted without its medium: the others answer. When it is back, what is
+ * read anew is right. (A tile at the border of another image, whose gaps the first could not fill,
+ * stays as it is until it leaves the cache.) */
+TEST(when_the_medium_of_the_first_image_goes_the_others_answer_until_it_is_back)
+{
+    struct world *w = start(7);
+    const struct lm_unit *u = &w->rig->unit;
+    const uint32_t three = patch_of(w);
+    forbid(w, 0);
+    w->rig->board.flash.fetch = fetch_unless_gone;
+    goes(w, 2); /* tiles of all images leave the cache */
+    comes(w, 2);
+    run(w->rig, 1);
+    assert_true(u->map.tiles.count.io_errors > 0);
+    assert_true((u->flags & LM_FLAG_TILE) != 0);
+    assert_int_equal(u->map.image_count, 3);
+    assert_true(patch_of(w) != three);
+    assert_true(lit_pixels(w->rig) > 1000);
+    w->rig->board.flash.fetch = NULL;
+    goes(w, 2);
+    comes(w, 2);
+    run(w->rig, 2); /* failed tiles are tried again after a second */
+    assert_int_equal(patch_of(w), three);
+    run(w->rig, 4);
+    assert_true((u->flags & LM_FLAG_TILE) == 0);
+    end(w);
+}
+
 TEST(a_flash_that_hangs_while_an_image_comes_is_outlived)
 {
     struct world *w = start(1);
