@@ -176,7 +176,7 @@ static int find_sources(struct source_list *list, const struct db_grid *grid,
 static void print_plan(FILE *out, const struct db_strip_options *o, const struct db_grid *grid,
                        const struct source_list *list, int reach)
 {
-    fprintf(out, "landmass strips 1\n");
+    fprintf(out, "landmass strips 1\nraster %d %d\n", grid->width, grid->height);
     for (long k = 0; k < o->shards; k++) {
         const struct db_rows own = rows_of(grid, o->shards, k);
         const struct db_rows seen = db_rows_around(own, reach, grid);

@@ -131,9 +131,13 @@ def on_this_machine(whole):
     check("without it the shard is made again, and the image is right", done == 0 and digest("world.lmdb") == whole, log())
     clean()
     done = ended(start("-j1", db=other_db("full", "trap '' XFSZ; ulimit -f 300"), retries=0))
+    full = len(parts())
     check("a full disk is a plain refusal that names the shard", done != 0 and "shard" in log() and "could not be made" in log()
           and not os.path.exists("world.lmdb"), log())
-    done = ended(start("-j2", "world.lmdb"))
+    done = ended(start("-j2", "world.lmdb", "--log-handler-script", WORLD + "/progress.py"))
+    told = log()
+    check("progress is a line for each step, with what is left",
+          told.count(" is made") == 6 - full + 1 and "more, some " in told and "image is made" in told and "Building DAG" not in told, told)
     check("with room again it goes on, and the image is right", done == 0 and digest("world.lmdb") == whole, log())
     clean()
     done = ended(start("-j1", db=other_db("hungry", "export OPENBLAS_NUM_THREADS=1; ulimit -v 285000"), retries=0))
@@ -185,6 +189,9 @@ def rasters():
         return [digest(kind + "-joined.tif") == digest(kind + ".tif") for kind in ("classes", "gamma")] \
             + [digest("world.lmdb") == digest("whole2.lmdb")]
 
+    done = ended(start("-j2", "estimate_classes", **run))
+    check("an estimate of strips stands before them", done == 0 and "3 strips of 256 x 2304 pixels" in log() and "estimate, " in log()
+          and not os.path.exists("work/classes"), log())
     done = ended(start("-j2", "world.lmdb", **run))
     right = is_right() if done == 0 else []
     check("classes and reflectivity in strips: the rasters and the image are the bytes of runs in one go", right == [True] * 3,

@@ -74,9 +74,9 @@ struct db_grid db_strips_grid(const struct db_grid *whole, struct db_rows rows);
 /* Say in the strip which one it is; nothing for a whole raster. */
 void db_strips_tag(struct db_raster_out *out, const struct db_strip_options *o);
 
-/* Write the plan: of each strip its rows and the files of `rasters` within `reach` rows of it. What
- * a raster that is put together of others (VRT) has elsewhere is left out; other files and `plain`
- * ones reach everywhere. Returns 0, or -1 with the error reported. */
+/* Write the plan: the raster's size, and of each strip its rows and the files of `rasters` within
+ * `reach` rows of it. What a raster that is put together of others (VRT) has elsewhere is left out;
+ * other files and `plain` ones reach everywhere. Returns 0, or -1 with the error reported. */
 struct db_strip_sources {
     const struct db_raster *const *rasters;
     int raster_count;
