@@ -515,4 +515,38 @@ TEST(the_amazon_polygons_hold_the_pixels_their_notes_count)
     }
 }
 
+/* ---- Blocks ---- */
+
+/* Bright rows above ground that is almost even: sums that have seen the first carry its rounding.
+ */
+static float fraction_at(int x, int y)
+{
+    return y < 8 ? 9.7e3f + 0.37f * (float)x : 0.1f + 1e-6f * (float)((x * 7 + y * 3) % 11);
+}
+
+TEST(features_do_not_depend_on_where_a_block_begins)
+{
+    enum { CONTEXT = 5, FEATURES = 3 };
+    static float values[SIDE * SIDE], whole[FEATURES * SIDE * SIDE], part[FEATURES * SIDE * SIDE];
+    static uint8_t valid[SIDE * SIDE];
+    struct db_grid grid = fixture_grid(SIDE, SIDE);
+    struct db_raster r;
+    for (int i = 0; i < SIDE * SIDE; i++) {
+        values[i] = fraction_at(i % SIDE, i / SIDE);
+    }
+    fixture_raster("fractions.tif", &grid, GDT_Float32, values, -1);
+    OSRDestroySpatialReference(grid.crs);
+    assert_int_equal(db_raster_open_one(&r, fixture_path("fractions.tif")), 0);
+    assert_int_equal(db_features_read(&r, CONTEXT, 0, SIDE, whole, valid), 0);
+    for (int y = 0; y < SIDE; y += 17) {
+        const int rows = y + 17 < SIDE ? 17 : SIDE - y;
+        assert_int_equal(db_features_read(&r, CONTEXT, y, rows, part, valid), 0);
+        for (int k = 0; k < FEATURES; k++) {
+            assert_memory_equal(part + k * rows * SIDE, whole + (k * SIDE + y) * SIDE,
+                                (size_t)(rows * SIDE) * sizeof *part);
+        }
+    }
+    db_raster_close(&r);
+}
+
 TEST_GROUP(fixture_open, fixture_close);
