@@ -63,6 +63,7 @@ def line(shards):
 def row(cell, cores, measured, options):
     shards, join = measured
     begin, rates = line(shards)
+    begin += options.start
     exponent = math.floor(math.log2(cell / UNIT_M))
     side = TILE_CELLS * UNIT_M * 2**exponent
     tiles = options.area / side**2 * 4 / 3
@@ -90,6 +91,20 @@ def row(cell, cores, measured, options):
             clock(shard_s), bound, clock(join_s), "cores" if join_cpu / images * waves >= join_s else "disk", shard_s + join_s)
 
 
+def night(measured, options):
+    """Cells from coarse to fine, until the shards and the join of one plan take too long."""
+    hours, cores = options.night[0], int(options.night[1])
+    print("| cells | tiles | shards | disk | shards in | join in | both |\n|" + "---|" * 7)
+    cell = UNIT_M * 2**18
+    while cell > 1:
+        (metres, tiles, count, images, _, _, _, _, disk, _, shard_time, _, join_time, _, seconds) = row(cell, cores, measured, options)
+        print("| %.1f m | %.3g | %d | %.2g TB | %s | %s | %s%s |"
+              % (metres, tiles, count, disk, shard_time, join_time, clock(seconds), "" if seconds <= 3600 * hours else ": too long"))
+        if seconds > 3600 * hours or images > 1:
+            return
+        cell /= 2
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("folder")
@@ -100,6 +115,8 @@ def main():
     parser.add_argument("--data", type=float, nargs="+", default=[30, 10, 5], help="metres of the sources' pixels (30 10 5)")
     parser.add_argument("--cores", type=int, nargs="+", default=[32, 256, 2000])
     parser.add_argument("--fails", type=float, default=0.01, help="share of shards that fail and are made again (0.01)")
+    parser.add_argument("--start", type=float, default=2, help="seconds of a core between two shards, for the engine and the cluster (2)")
+    parser.add_argument("--night", nargs=2, type=float, metavar=("HOURS", "CORES"), help="instead: the finest cells that so long is enough for")
     parser.add_argument("--times", nargs=2, type=int, metavar="CORES", help="instead: the measured shards on so many cores")
     options = parser.parse_args()
     measured = read(options.folder)
@@ -109,11 +126,15 @@ def main():
         print("%d shards: " % len(seconds) + ", ".join("%.1f s on %d" % (span, n) for span, n in zip(spans, options.times))
               + ": %.2f times as fast" % (spans[0] / spans[1]))
         return
+    if options.night:
+        night(measured, options)
+        return
     (shards, join), (begin, rates) = measured, line(measured[0])
     print("Measured: %d shards, %.1f s and %.2f to %.2f ms a tile, %.0f MiB; join %.2f ms a tile, %.0f MiB. Assumed: a disk of %.0f MB/s, "
-          "%.0f MB/s of a node, %.0f bytes of sources a tile.\n"
+          "%.0f MB/s of a node, %.0f bytes of sources a tile, "
+          "%.0f s between two shards of a core.\n"
           % (len(shards), begin, 1e3 * min(rates), 1e3 * max(rates), max(s["memory_mib"] for s in shards),
-             1e3 * join["processor_s"] / join["tiles"], join["memory_mib"], options.disk, options.network, options.source))
+             1e3 * join["processor_s"] / join["tiles"], join["memory_mib"], options.disk, options.network, options.source, options.start))
     print("| data, cells | tiles | shards, images | core-hours, of joins | cores | memory | disk | moved | shards in | joins in |\n|"
           + "---|" * 10)
     for cell in options.data:

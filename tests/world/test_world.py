@@ -114,6 +114,10 @@ def on_this_machine(whole):
     report = open("work/report.txt").read() if os.path.exists("work/report.txt") else ""
     check("a report tells each shard", "6 shards" in report and len(report.splitlines()) == 9, report)
     check("and pictures are there", len(os.listdir("work/pictures")) == 4)
+    costs = [subprocess.run([sys.executable, "-B", WORLD + "/cost.py", "work", *words], capture_output=True, text=True).stdout.splitlines()
+             for words in ((), ("--night", "8", "2"), ("--times", "1", "2"))]
+    check("and what the Earth would cost, a night's cells and two cores are told of it", len(costs[0]) == 13 and costs[1][-1].endswith(
+        ": too long |") and len(costs[1]) > 4 and costs[2][-1].startswith("6 shards: "), str(costs))
     done = ended(start("-j2"))
     check("run again, it has nothing to do", done == 0 and "Nothing to be done" in log(), log())
     damaged = sorted(parts())[3]
