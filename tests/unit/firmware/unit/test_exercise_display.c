@@ -348,6 +348,26 @@ TEST(patches_agree)
     end_pair(&p);
 }
 
+/* A second database comes, here one that is none, and goes. */
+TEST(when_the_map_changes_the_antenna_does_not_wait_for_the_next_sweep)
+{
+    struct display d = switch_on(&plain, 0, 1);
+    d.r->board.lent.images[1].offset = 4096;
+    begin(&d);
+    command(d.r, range_10);
+    command(d.r, sector(LM_SECTOR_GMT, LM_FOV_NORM));
+    for (uint32_t i = 0; i < 8; i++) {
+        fly(&d, 10 + i * 1.3);
+        command(d.r, (struct lm_control){.kind = LM_CONTROL_IMAGE,
+                                         .image = {.place = 2, .bytes = i % 2 == 0 ? 9000 : 0}});
+        const uint32_t lines = d.r->unit.count.lines;
+        fly(&d, 10.3 + i * 1.3);
+        assert_true(d.r->unit.count.lines > lines + 20); /* of 128 a second */
+        assert_int_equal(lm_unit_map_refused(&d.r->unit.map), i % 2 == 0);
+    }
+    free_rig(d.r);
+}
+
 TEST(silence_is_said_on_the_glass_and_nothing_jumps)
 {
     struct exercise x = plain;
