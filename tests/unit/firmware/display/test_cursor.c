@@ -139,6 +139,23 @@ TEST(full_deflection_crosses_half_the_glass_in_a_second_in_every_direction)
     }
 }
 
+/* At 20 ms it steps; what is late by less than that keeps the beat, and what is missed is not made
+ * up for. */
+TEST(steps_keep_their_beat_and_do_not_catch_up)
+{
+    static const struct {
+        uint64_t now_us;
+        bool is_step;
+    } calls[] = {{20000, true},  {39999, false},  {50000, true},   {59999, false},  {60000, true},
+                 {60000, false}, {100000, true},  {100000, false}, {119999, false}, {120000, true},
+                 {170000, true}, {170000, false}, {189999, false}, {189999, false}, {190000, true}};
+    struct scene s = {0};
+    look_from(&s, origins[0], 0);
+    for (size_t i = 0; i < sizeof calls / sizeof *calls; i++) {
+        assert_int_equal(lm_cursor_step(&s.cursor, &s.against, calls[i].now_us), calls[i].is_step);
+    }
+}
+
 TEST(slewing_stops_at_the_edge_of_what_is_shown)
 {
     for (int turn = 0; turn < 360; turn += 20) {

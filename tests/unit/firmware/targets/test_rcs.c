@@ -131,6 +131,35 @@ TEST(a_corner_is_strong_over_roughly_45_degrees)
     assert_true(width[0] > 35 && width[0] < 50 && width[1] > 35 && width[1] < 50);
 }
 
+/* Along a face the corner shows nothing of it. There the shared area is the difference of equal
+ * numbers, which rounding makes a little less than nothing: it must not become the greatest echo of
+ * all. The directions are all those within a few of the last places of the diagonal of each face.
+ */
+TEST(a_corner_seen_along_a_face_is_not_there)
+{
+    enum { NEAR = 6 };
+    const struct lm_shape corner = {LM_SHAPE_TRIHEDRAL, false, {1000, 0}};
+    const double peak = rcs_db(&corner, x_band_m, at(0, 0));
+    /* Legs of the corner: the first two are right and left below, the third is above. */
+    const double r2 = sqrt(2), r3 = sqrt(3), r6 = sqrt(6);
+    const struct ref_vector leg[3] = {
+        {1 / r3, 1 / r2, -1 / r6}, {1 / r3, -1 / r2, -1 / r6}, {1 / r3, 0, r2 / r3}};
+    double most = -1000;
+    for (int face = 0; face < 3; face++) {
+        const struct ref_vector a = leg[face], b = leg[(face + 1) % 3];
+        const struct lm_direction d = fixed_of((struct ref_vector){
+            (a.ahead + b.ahead) / r2, (a.right + b.right) / r2, (a.up + b.up) / r2});
+        for (int i = 0; i < NEAR * NEAR * NEAR; i++) {
+            const struct lm_direction near = {d.ahead_q30 + i % NEAR - NEAR / 2,
+                                              d.right_q30 + i / NEAR % NEAR - NEAR / 2,
+                                              d.up_q30 + i / NEAR / NEAR - NEAR / 2};
+            most = fmax(most, lm_rcs_dbsm_q8(&corner, 30000, near) / 256.0);
+        }
+    }
+    print_message("# along a face: at most %.1f dB below the peak\n", peak - most);
+    assert_true(most < peak - 60);
+}
+
 /* ---- the whole pattern ---- */
 
 /* Worst difference from the reference over random directions, where the pattern is within `depth`
