@@ -441,6 +441,99 @@ TEST(a_page_that_this_radar_does_not_have_is_not_answered)
     close_wire(w);
 }
 
+/* One frame of an offer is not what it should be: part 3 of the settings, or ASK. Those that are no
+ * frames of a swap at all are not even counted. */
+TEST(an_offer_with_a_frame_of_another_form_is_not_answered)
+{
+    static const struct {
+        struct lm_can_frame change; /* flags and bits that differ */
+        uint8_t counted;
+    } forms[] = {{{.id = 1}, 0},
+                 {{.is_extended = true}, 0},
+                 {{.is_remote = true}, 0},
+                 {{.is_error = true}, 0},
+                 {{.length = 8 ^ 7}, 1},
+                 {{.data = {RIGHT ^ RIVAL}}, 1},
+                 {{.data = {0, LM_CANAS_UCHAR4 ^ LM_CANAS_LONG}}, 1}};
+    struct rig *left;
+    struct wire *w = begin_alone(&left);
+    struct seat *s = &w->seat[0];
+    const struct lm_settings good = {.page = {0}};
+    for (uint32_t i = 0; i < 2 * sizeof forms / sizeof *forms; i++) {
+        const struct lm_can_frame *change = &forms[i / 2].change;
+        const uint32_t from = s->head, refused = left->unit.swap.refused;
+        const uint32_t changed = i % 2 == 0 ? LM_SWAP_PARTS : 3;
+        offer(s, &good, (uint8_t)(i + 1));
+        struct lm_can_frame *f = &s->waiting[(from + changed) % QUEUE];
+        f->id ^= change->id;
+        f->length ^= change->length;
+        f->is_extended = change->is_extended;
+        f->is_remote = change->is_remote;
+        f->is_error = change->is_error;
+        f->data[0] ^= change->data[0];
+        f->data[1] ^= change->data[1];
+        fly(w, 0.05);
+        assert_int_equal(w->sent, 0);
+        /* Of settings that are not whole ASK is refused. */
+        assert_int_equal(left->unit.swap.refused - refused, forms[i / 2].counted + i % 2);
+    }
+    offer(s, &good, 100);
+    s->waiting[(s->head - 1) % QUEUE].data[4] = RIVAL; /* it asks another one */
+    fly(w, 0.05);
+    assert_int_equal(w->sent, 0);
+    offer(s, &good, 101);
+    fly(w, 0.05);
+    assert_int_equal(w->sent, LM_SWAP_PARTS + 1);
+    close_wire(w);
+}
+
+/* TAKE is for the exchange that was answered, and for no other. Where it comes again because TAKEN
+ * was lost, it is answered again, and no page changes twice. */
+TEST(a_take_counts_once_and_for_its_own_exchange)
+{
+    static const uint8_t to_left[4] = {LEFT, 0, 0, 0};
+    struct rig *left;
+    struct wire *w = begin_alone(&left);
+    const struct lm_settings sea_page = {.page = {0, LM_PICTURE_SECTOR, LM_SECTOR_SEA}};
+    const struct lm_can_frame take = frame_of(LM_SWAP_TAKE, 7, to_left),
+                              of_another = frame_of(LM_SWAP_TAKE, 8, to_left),
+                              taken = frame_of(LM_SWAP_TAKEN, 7, to_left),
+                              answer = frame_of(LM_SWAP_ANSWER, 7, to_left);
+    put_to(&w->seat[0], &take); /* of no exchange */
+    fly(w, 0.05);
+    assert_int_equal(left->unit.swap.refused, 1);
+    offer(&w->seat[0], &sea_page, 7);
+    fly(w, 0.05);
+    const struct lm_can_frame early[] = {of_another, taken, answer};
+    for (uint32_t i = 0; i < 3; i++) {
+        put_to(&w->seat[0], &early[i]);
+        fly(w, 0.02);
+        assert_int_equal(left->unit.swap.refused, 2 + i);
+        assert_int_equal(left->unit.count.swaps, 0);
+    }
+    for (uint32_t i = 0; i < 3; i++) {
+        const uint32_t sent = w->sent;
+        put_to(&w->seat[0], &take);
+        fly(w, 0.05);
+        assert_int_equal(left->unit.count.swaps, 1);
+        assert_int_equal(w->sent, sent + 1); /* TAKEN */
+        assert_int_equal(left->unit.page.mode, LM_SECTOR_SEA);
+    }
+    assert_int_equal(left->unit.swap.refused, 4);
+    /* Another page comes behind the one that was answered, but nobody asked with it. */
+    struct seat *seat = &w->seat[0];
+    offer(seat, &sea_page, 9);
+    fly(w, 0.05);
+    offer(seat, &sea_page, 10);
+    seat->head--; /* without ASK */
+    const struct lm_can_frame unasked = frame_of(LM_SWAP_TAKE, 10, to_left);
+    put_to(seat, &unasked);
+    fly(w, 0.05);
+    assert_int_equal(left->unit.count.swaps, 1);
+    assert_int_equal(left->unit.swap.refused, 5);
+    close_wire(w);
+}
+
 /* The rest of the settings may hold anything: it is brought into range. */
 TEST(numbers_beyond_their_range_do_no_harm)
 {
