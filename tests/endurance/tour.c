@@ -139,10 +139,11 @@ static void say_navigation(struct writer *w, uint64_t tick, const struct tour_po
     say_float(w, 305, tick, p->turn_deg_s);
 }
 
-/* The exercise's time is that of the day: at midnight it begins again. */
+/* The exercise's time is that of a day: at midnight it begins again. */
 static void say_exercise(struct writer *w, uint64_t second)
 {
-    say(w, 1820, LM_CANAS_LONG, second, (uint32_t)(second % DAY_S * 1000));
+    say(w, 1820, LM_CANAS_LONG, second,
+        (uint32_t)((second + DAY_S - TOUR_MIDNIGHT_S) % DAY_S * 1000));
     say_float(w, 1821, second, 1);
 }
 

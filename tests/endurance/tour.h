@@ -10,8 +10,9 @@
 
 enum {
     TOUR_PLACES = 4,
-    TOUR_FRAMES = 80,    /* of a tick, at most */
-    TOUR_TICK_US = 50000 /* between two sets of navigation frames */
+    TOUR_FRAMES = 80,      /* of a tick, at most */
+    TOUR_TICK_US = 50000,  /* between two sets of navigation frames */
+    TOUR_MIDNIGHT_S = 7200 /* the exercise's first midnight; then, too, a place is circled */
 };
 
 /* A map is here, and the aircraft circles over it, to both sides of the meridian in turn. */
