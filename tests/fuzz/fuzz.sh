@@ -1,6 +1,7 @@
 #!/bin/sh
 # Fuzz every target with clang's libFuzzer, one after another. Usage: fuzz.sh [SECONDS [TARGET...]]
-# SECONDS for each target (60). New inputs are kept in build/fuzz/corpus, whatever breaks a target in build/fuzz/findings.
+# SECONDS for each target (60). New inputs are kept in build/fuzz/corpus, whatever breaks a target in build/fuzz/findings. The
+# inputs that were tried without a finding are noted in build/fuzz/counts: count.sh adds them up.
 # Ends with status 1 when something was found.
 set -u
 seconds=${1:-60}
@@ -19,6 +20,7 @@ for target in $targets; do
         runs=$(sed -n 's/^stat::number_of_executed_units: *//p' "$o/logs/$target")
         cover=$(sed -n 's/.* cov: \([0-9]*\).*/\1/p' "$o/logs/$target" | tail -n 1)
         all=$((all + runs))
+        echo "$target $runs" >>$o/counts
         echo "$target: no finding in $runs runs, $cover edges covered"
     else
         failed=1
