@@ -13,11 +13,13 @@
  * - frames come, the sweep stands or is gone, and no flag says so;
  * - RECOVERY_S after the faults it has other flags than its twin, or another picture.
  *
+ * SIGINT and SIGTERM end it behind the run under way, with the table of those before.
  * Exit code 0: no run failed; 1: some did, and each is named on standard error. */
 #include "faults.h"
 
 #include <inttypes.h>
 #include <math.h>
+#include <signal.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -35,14 +37,17 @@ enum {
     LONG_MS = 8000, /* the faults' time */
     TILES = 44,     /* so few that tiles are read all the time */
     LOOKS = 300,    /* of a twin */
+    BEHIND_BYTES = 4096,
     MODES = 6
 };
 
 enum {
     NAV = LM_FLAG_NAV_STALE | LM_FLAG_NAV_DEAD,
+    EXERCISE = LM_FLAG_WEATHER | LM_FLAG_EXERCISE,
+    LATE = LM_FLAG_OFF_MAP, /* a sweep that is joined late is judged by what is left of it */
     OPERATOR = LM_FLAG_FROZEN | LM_FLAG_SILENT | LM_FLAG_UNABLE | LM_FLAG_OFF_MAP,
     /* What tells the operator that a sweep stands or is gone. */
-    STANDS = NAV | LM_FLAG_DB | LM_FLAG_FROZEN | LM_FLAG_SILENT
+    STANDS = NAV | LM_FLAG_DB | LM_FLAG_FROZEN | LM_FLAG_SILENT | LM_FLAG_POLE
 };
 
 /* What the picture does. */
@@ -66,12 +71,23 @@ static const struct kind_of_fault kinds[KINDS] = {
     [READS_NEVER] = {"a read does not end", 0, LM_FLAG_TILE, 0, P(LIVE), false},
     [READS_TORN] = {"reads bring half of the bytes", 0, LM_FLAG_TILE, 0, P(LIVE), false},
     [READS_FLIP] = {"bits of what is read are wrong", 0, LM_FLAG_TILE, 0, P(LIVE), false},
-    [BUS_SILENT] = {"the bus is silent", LM_FLAG_NAV_DEAD | LM_FLAG_BUS, NAV | LM_FLAG_BUS, NAV,
-                    P(LIVE) | P(STANDING) | P(REMOVED), false},
-    [BUS_DOWN] = {"the bus is down", LM_FLAG_NAV_DEAD | LM_FLAG_BUS, NAV | LM_FLAG_BUS, NAV,
-                  P(LIVE) | P(STANDING) | P(REMOVED), false},
+    [READS_REFUSED] = {"the flash takes no read", 0, LM_FLAG_TILE, 0, P(LIVE), false},
+    [READS_ELSEWHERE] = {"reads bring bytes of another place", 0, LM_FLAG_TILE, 0, P(LIVE), false},
+    [BUS_SILENT] = {"the bus is silent", LM_FLAG_NAV_DEAD | LM_FLAG_BUS,
+                    NAV | LM_FLAG_BUS | EXERCISE, NAV, P(LIVE) | P(STANDING) | P(REMOVED), false},
+    [BUS_DOWN] = {"the bus is down", LM_FLAG_NAV_DEAD | LM_FLAG_BUS, NAV | LM_FLAG_BUS | EXERCISE,
+                  NAV, P(LIVE) | P(STANDING) | P(REMOVED), false},
     [BUS_FLOOD] = {"the bus is full of strangers' frames", 0, 0, 0, P(LIVE), false},
     [BUS_ERRORS] = {"the controller reports errors", 0, 0, 0, P(LIVE), false},
+    [FRAMES_LOST] = {"some frames are lost", 0, NAV | EXERCISE | LATE, 0,
+                     P(LIVE) | P(STANDING) | P(REMOVED), false},
+    [FRAMES_OLD] = {"frames come with an old time", 0, NAV | EXERCISE | LATE, 0,
+                    P(LIVE) | P(STANDING) | P(REMOVED), false},
+    [FRAMES_AHEAD] = {"frames come with a time ahead", 0, NAV | EXERCISE | LATE, 0,
+                      P(LIVE) | P(STANDING) | P(REMOVED), false},
+    [SENDS_BUSY] = {"the bus takes no frame", 0, 0, 0, P(LIVE), false},
+    [SENDS_FAIL] = {"sending fails", 0, 0, 0, P(LIVE), false},
+    [QUESTIONS] = {"a node asks without a pause", 0, 0, 0, P(LIVE), false},
     [NO_POSITION] = {"no position comes", LM_FLAG_NAV_DEAD, NAV, NAV,
                      P(LIVE) | P(STANDING) | P(REMOVED), false},
     [NO_HEIGHT] = {"no height comes", 0, NAV, NAV, P(LIVE) | P(STANDING) | P(REMOVED), false},
@@ -84,20 +100,32 @@ static const struct kind_of_fault kinds[KINDS] = {
     [STUCK_CODE] = {"a transmitter is stuck", 0, LM_FLAG_SENDER, LM_FLAG_SENDER, P(LIVE), false},
     [RIVAL] = {"a second node sends a quantity", 0, LM_FLAG_SENDER | NAV, LM_FLAG_SENDER, P(LIVE),
                false},
+    [NO_WEATHER] = {"no weather comes", 0, LM_FLAG_WEATHER, 0, P(LIVE), false},
+    [NO_EXERCISE] = {"no exercise clock comes", 0, LM_FLAG_EXERCISE | LATE, 0, P(LIVE), false},
+    [NO_TARGETS] = {"no live targets come", 0, LM_FLAG_EXERCISE, 0, P(LIVE), false},
+    [EXERCISE_LEAPS] = {"the exercise clock leaps", 0, LATE, 0, P(LIVE), false},
     [JUMP_NEAR] = {"the position jumps by a few km", 0, LM_FLAG_OFF_MAP, 0, P(LIVE), true},
-    [JUMP_FAR] = {"the position jumps off the map", 0, LM_FLAG_OFF_MAP, 0, P(LIVE) | P(REMOVED),
-                  true},
+    [JUMP_FAR] = {"the position jumps off the map", 0, LM_FLAG_OFF_MAP | LM_FLAG_POLE, 0,
+                  P(LIVE) | P(REMOVED), true},
     [NO_SURFACE] = {"no surface is free", 0, 0, 0, P(UNSEEN), false},
     [SCREEN_FAILS] = {"the screen lends no surface", 0, 0, 0, P(UNSEEN), false},
     [SHOWING_FAILS] = {"the screen shows no picture", 0, 0, 0, P(LIVE) | P(UNSEEN), false},
+    [SURFACE_LOST] = {"the screen's memory is lost", 0, 0, 0, P(LIVE) | P(UNSEEN), false},
     [KEY_STUCK] = {"a key is stuck", 0, OPERATOR, 0, P(LIVE) | P(STANDING) | P(REMOVED), true},
     [KEY_STORM] = {"all keys and knobs at once", 0, OPERATOR, 0, P(LIVE) | P(STANDING) | P(REMOVED),
                    true},
+    [KEY_CHATTERS] = {"a key chatters", 0, OPERATOR, 0, P(LIVE) | P(STANDING) | P(REMOVED), true},
+    [STICK_HELD] = {"the stick is held", 0, LM_FLAG_OFF_MAP, 0, P(LIVE), true},
+    [BAD_IMAGE] = {"a second database is no database", 0, LM_FLAG_TILE | LATE, LM_FLAG_TILE,
+                   P(LIVE), false},
     [BAD_CONTROLS] = {"controls out of their range", 0, OPERATOR, 0, P(LIVE), false},
-    [STARVED] = {"steps come late", 0, NAV | LM_FLAG_BUS, 0, P(LIVE) | P(UNSEEN), false},
-    [STOPPED] = {"no step comes", 0, NAV | LM_FLAG_BUS, 0, P(LIVE) | P(REMOVED), false},
-    [LEAP] = {"the clock leaps", 0, NAV | LM_FLAG_BUS, 0, P(LIVE) | P(REMOVED), false},
-    [RESTART] = {"the unit restarts", 0, NAV | LM_FLAG_BUS | LM_FLAG_OFF_MAP, 0,
+    [STARVED] = {"steps come late", 0, NAV | LM_FLAG_BUS | EXERCISE | LATE, 0, P(LIVE) | P(UNSEEN),
+                 false},
+    [STOPPED] = {"no step comes", 0, NAV | LM_FLAG_BUS | EXERCISE | LATE, 0, P(LIVE) | P(REMOVED),
+                 false},
+    [LEAP] = {"the clock leaps", 0, NAV | LM_FLAG_BUS | EXERCISE | LATE, 0, P(LIVE) | P(REMOVED),
+              false},
+    [RESTART] = {"the unit restarts", 0, NAV | LM_FLAG_BUS | EXERCISE | LATE, 0,
                  P(LIVE) | P(REMOVED) | P(UNSEEN), true},
 };
 
@@ -148,6 +176,7 @@ struct campaign {
     uint64_t seed;
     bool is_traced;
     struct rig *rig[MODES], *saved[MODES]; /* in good flight, and as it was then */
+    struct faults flown[MODES];            /* as they were then: none */
     struct look twin[MODES][LOOKS];
     struct tally tally[KINDS + 1]; /* the last: two at once */
 };
@@ -187,7 +216,8 @@ static void draw_run(struct run *x, struct hs_rng *rng)
     }
     if (has_kind(x, RESTART) &&
         (has_kind(x, READS_FAIL) || has_kind(x, READS_FAIL_SOME) || has_kind(x, READS_LATE) ||
-         has_kind(x, READS_NEVER) || has_kind(x, READS_TORN) || has_kind(x, READS_FLIP))) {
+         has_kind(x, READS_NEVER) || has_kind(x, READS_TORN) || has_kind(x, READS_FLIP) ||
+         has_kind(x, READS_REFUSED) || has_kind(x, READS_ELSEWHERE))) {
         x->may |= LM_FLAG_DB;
         x->pictures |= P(REMOVED);
     }
@@ -281,6 +311,17 @@ static const char *what_is_ill(const struct run *x, const struct look *now)
                                                  : NULL;
 }
 
+/* Of a surface that was lost, the rest. */
+static bool has_garbage(const struct rig *r)
+{
+    for (uint32_t i = 0; i < WIDTH * HEIGHT; i++) {
+        if (r->glass[i] == FAULTS_GARBAGE) {
+            return true;
+        }
+    }
+    return false;
+}
+
 /* The faults are gone. An image that could not be read at the start is read at the next one. */
 static const char *recover(const struct campaign *c, struct run *x, struct tally *t)
 {
@@ -292,7 +333,7 @@ static const char *recover(const struct campaign *c, struct run *x, struct tally
     }
     while (ms < ill_ms + 1000 * STAYS_WELL_S && ms < 1000 * (RECOVERY_S + STAYS_WELL_S)) {
         const struct look now = next_look(c, x, "after", &ms);
-        ill = what_is_ill(x, &now);
+        ill = has_garbage(x->faults.r) ? "what was in a lost surface stays" : what_is_ill(x, &now);
         ill_ms = ill != NULL ? ms : ill_ms;
     }
     t->well_after_ms = ill_ms > t->well_after_ms ? ill_ms : t->well_after_ms;
@@ -316,7 +357,7 @@ static bool run_one(struct campaign *c, uint32_t number)
     memcpy(r, c->saved[x.mode], sizeof *r); /* where it was: it points into itself */
     x.twin = c->twin[x.mode];
     x.begun_us = r->now_us;
-    faults_open(&x.faults, r, &rng);
+    faults_go_on(&x.faults, &c->flown[x.mode], &rng);
     for (const uint64_t until = r->now_us + 1000 * (uint64_t)x.begin_ms; r->now_us < until;) {
         faults_step(&x.faults);
     }
@@ -338,8 +379,15 @@ static bool run_one(struct campaign *c, uint32_t number)
 
 /* ---- the flights ---- */
 
+static void fly(struct faults *f, double seconds)
+{
+    for (const uint64_t until = f->r->now_us + (uint64_t)(seconds * 1e6); f->r->now_us < until;) {
+        faults_step(f);
+    }
+}
+
 /* A unit in good flight in mode n. */
-static struct rig *fly_mode(uint32_t n)
+static struct rig *fly_mode(struct faults *f, uint32_t n)
 {
     static const struct lm_control mode[MODES] = {
         [0] = {.kind = LM_CONTROL_SECTOR, .sector = {LM_SECTOR_GM, LM_FOV_NORM}},
@@ -350,21 +398,27 @@ static struct rig *fly_mode(uint32_t n)
     };
     const struct lm_position ahead = {FX_BAM_DEG(46), FX_BAM_DEG(11) + FX_BAM_DEG(1) / 40};
     struct rig *r = make_rig();
+    r->board.lent.images[1].offset = BEHIND_BYTES; /* of the one image: no image begins there */
+    r->board.lent.bus_node = 20;
+    r->board.lent.tells_reports = true;
     r->board.lent.tile_pool_bytes = TILES * sizeof(struct lm_tile);
     if (lm_unit_init(&r->unit, &r->board.lent) != LM_OK) {
         abort();
     }
+    faults_open(f, r);
     command(r, range_10);
-    run(r, 1.5);
+    fly(f, 1.5);
     command(r, (struct lm_control){.kind = LM_CONTROL_CURSOR, .cursor = ahead});
     command(r, n < 5 ? mode[n] : patch_here);
-    run(r, n < 5 ? 8 : 1); /* a whole sweep, or the beginning of a patch */
+    fly(f, n < 5 ? 8 : 1); /* a whole sweep, or the beginning of a patch */
     return r;
 }
 
 static void prepare(struct campaign *c, uint32_t n)
 {
-    c->rig[n] = fly_mode(n);
+    struct faults f;
+    c->rig[n] = fly_mode(&f, n);
+    c->flown[n] = f;
     c->saved[n] = malloc(sizeof *c->saved[n]);
     if (c->saved[n] == NULL) {
         abort();
@@ -373,7 +427,7 @@ static void prepare(struct campaign *c, uint32_t n)
     struct watch w = {0};
     for (uint32_t i = 0; i < LOOKS; i++) {
         c->twin[n][i] = look(c->rig[n], &w);
-        run(c->rig[n], LOOK_US / 1e6);
+        fly(&f, LOOK_US / 1e6);
     }
 }
 
@@ -408,6 +462,14 @@ static void print_table(const struct campaign *c)
     print_row("two of them at once", &c->tally[KINDS]);
 }
 
+static volatile sig_atomic_t must_end;
+
+static void ask_to_end(int number)
+{
+    (void)number;
+    must_end = 1;
+}
+
 int main(int argc, char **argv)
 {
     static struct campaign c;
@@ -424,11 +486,13 @@ int main(int argc, char **argv)
     if (c.is_traced) {
         return !run_one(&c, (uint32_t)strtoul(argv[3], NULL, 10));
     }
-    uint32_t failed = 0;
-    for (uint32_t n = 0; n < count; n++) {
-        failed += !run_one(&c, n);
+    uint32_t failed = 0, flown = 0;
+    signal(SIGINT, ask_to_end);
+    signal(SIGTERM, ask_to_end);
+    for (; flown < count && !must_end; flown++) {
+        failed += !run_one(&c, flown);
     }
     print_table(&c);
-    fprintf(stderr, "%" PRIu32 " runs, %" PRIu32 " failed\n", count, failed);
+    fprintf(stderr, "%" PRIu32 " runs, %" PRIu32 " failed\n", flown, failed);
     return failed != 0;
 }
