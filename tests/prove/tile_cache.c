@@ -5,11 +5,12 @@
  *
  * Proved, for any cache that keeps it and any tile: no access outside an object, loops end; a
  * request keeps the ring. prove_find: a tile that is found is the one that was asked for.
- * prove_queue: a request is taken, or it is there already, or the ring is full and it is counted.
+ * prove_claim: a slot that is given to another tile leaves its chain and enters the right one, in
+ * which the tile is then found; a slot that is read or pinned is never taken. prove_queue: a
+ * request is taken, or it is there already, or the ring is full and it is counted.
  *
  * Assumed: three slots, two chains and two LODs stand for all; the .proof file shrinks the tables.
- * That a slot's change of tile keeps the chains is not proved, nor is the reading of records (`db`,
- * `lz4`). */
+ * The reading of records is proved elsewhere (`db`, `lz4`). */
 #include "firmware/map/tile_cache.c"
 
 #include "prove.h"
@@ -71,6 +72,28 @@ void prove_find(void)
     PROVE(i == LM_SLOT_NONE ||
           (i < LM_SLOT_NONE && c.slots[i].state != LM_SLOT_FREE && c.slots[i].lod == lod &&
            c.slots[i].row == row && c.slots[i].column == column));
+}
+
+void prove_claim(void)
+{
+    struct lm_tile_cache c = a_cache();
+    const struct lm_tile_key key = {nondet_u32(), nondet_u32(), nondet_u32(), nondet_u8(), 0};
+    ASSUME(key.lod < LODS);
+    uint32_t kept = 0; /* bit n: slot n must not be taken */
+    for (uint32_t n = 0; n < LM_TILE_SLOTS_MAX; n++) {
+        const bool is_top =
+            c.is_top_resident && c.slots[n].state == LM_SLOT_RESIDENT && c.slots[n].lod == LODS - 1;
+        kept |= (uint32_t)(is_top || c.slots[n].state == LM_SLOT_READING) << n;
+    }
+    const uint16_t i = claim_slot(&c, &key);
+    PROVE(i <= LM_SLOT_NONE);
+    PROVE(i < LM_SLOT_NONE || kept == (1u << LM_TILE_SLOTS_MAX) - 1);
+    if (i < LM_SLOT_NONE) {
+        PROVE((kept >> i & 1) == 0);
+        c.slots[i].state = LM_SLOT_READING; /* as whoever claims it does */
+        PROVE(find(&c, key.lod, key.row, key.column) == i);
+    }
+    PROVE(is_kept(&c));
 }
 
 void prove_queue(void)
