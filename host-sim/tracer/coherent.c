@@ -3,6 +3,7 @@
 #include "tracer/ends.h"
 #include "tracer/origin.h"
 #include "tracer/vec.h"
+#include "tracer/wave.h"
 
 #include <string.h>
 
@@ -18,6 +19,7 @@ struct tube {
     double wider;           /* than there, where the tube ends, and the field as much weaker */
     double gain;            /* of the field on the way back, over that from the centre */
     double complex field;
+    struct wave wave; /* in its place, where the law follows the electric vector */
 };
 
 struct adder {
@@ -26,8 +28,14 @@ struct adder {
     uint64_t seed;
     double sign;
     bool is_plain;
-    struct ends ends; /* in the axes of the records */
+    struct ends ends;    /* in the axes of the records */
+    struct vec received; /* polarisation, where the law follows it */
 };
+
+static bool is_followed(const struct adder *a)
+{
+    return a->law->channel != REFLECT_AS_LAW;
+}
 
 static struct vec normal_of(const struct trace_record *t)
 {
@@ -64,6 +72,7 @@ static struct tube primary_tube(const struct adder *a, uint32_t ray)
         .wider = 1,
         .gain = 1,
         .field = a->sign,
+        .wave = wave_of(wave_sent(a->law->channel, x)),
     };
 }
 
@@ -87,10 +96,15 @@ static void end_tube(const struct adder *a, struct tube *u, uint32_t b,
 static void reflect_tube(const struct adder *a, struct tube *u, const struct trace_record *t)
 {
     const struct vec normal = normal_of(t);
+    if (is_followed(a)) {
+        const struct reflect_pair pair = reflect_pair_of(a->law, t);
+        u->wave = wave_reflected(&u->wave, u->along, normal, &pair);
+    } else {
+        u->field *= reflect_field_of(a->law, t).specular;
+    }
     u->along = mirrored(u->along, normal);
     u->right = mirrored(u->right, normal);
     u->rise = mirrored(u->rise, normal);
-    u->field *= reflect_field_of(a->law, t).specular;
 }
 
 /* The tube that meets record `t` of bounce `b`. */
@@ -147,35 +161,55 @@ static uint64_t mix(uint64_t x)
     return x ^ (x >> 31);
 }
 
-static double complex drawn_phase(const struct adder *a, uint32_t b, const struct trace_record *t)
+/* `scattering`: 0 or 1, of the two that one place has. */
+static double complex drawn_phase(const struct adder *a, uint32_t b, const struct trace_record *t,
+                                  uint64_t scattering)
 {
-    const uint64_t drawn = mix(a->seed ^ mix((uint64_t)b << 32 | t->ray));
+    const uint64_t drawn = mix(a->seed ^ mix(scattering << 40 | (uint64_t)b << 32 | t->ray));
     return cexp(I * (2 * pi * 0x1p-53 * (double)(drawn >> 11)));
+}
+
+/* What returns of the tube's end, for a mirror straight on and for a rough place of share 1. */
+static double complex followed_field(const struct adder *a, const struct tube *u, uint32_t b,
+                                     const struct trace_record *t, double mirror, double rough)
+{
+    const struct reflect_pair pair = reflect_pair_of(a->law, t);
+    const struct vec normal = normal_of(t), back = vec_scale(u->sight, -1);
+    const struct wave smooth = wave_optics(&u->wave, u->along, normal, back, &pair);
+    const struct wave scattered = wave_scattered(&u->wave, u->along, normal, back, a->law, t,
+                                                 drawn_phase(a, b, t, 0), drawn_phase(a, b, t, 1));
+    return mirror * wave_dot(&smooth, a->received) * cexp(I * (double)t->phase_rad) +
+           rough * wave_dot(&scattered, a->received);
 }
 
 static double complex field_of(const struct adder *a, uint32_t b, const struct trace_record *t)
 {
     const struct tube tube = tube_of(a, b, t);
-    const struct reflect_field f = reflect_field_of(a->law, t);
     const bool is_ground = b == 0 && strcmp(a->records->materials[t->material], "ground") == 0;
     const double back = is_ground ? 0 : share_back(a, &tube, normal_of(t));
     const double mirror =
         sqrt(4 * pi) / a->records->look.wavelength_m * tube.area_m2 * tube.wider * back;
-    const double rough = sqrt(4 * f.scattered * tube.area_m2);
+    const double rough = sqrt(4 * tube.area_m2);
+    if (is_followed(a)) {
+        return tube.gain * followed_field(a, &tube, b, t, mirror, rough);
+    }
+    const struct reflect_field f = reflect_field_of(a->law, t);
     return tube.field * tube.gain *
-           (mirror * f.specular * cexp(I * (double)t->phase_rad) + rough * drawn_phase(a, b, t));
+           (mirror * f.specular * cexp(I * (double)t->phase_rad) +
+            rough * sqrt(f.scattered) * drawn_phase(a, b, t, 0));
 }
 
 void coherent_echoes(const struct trace_records *r, const struct reflect_law *law, uint64_t seed,
                      void (*take)(void *ctx, const struct coherent_echo *echo), void *ctx)
 {
     /* Fresnel's VV is that of the magnetic field. The electric one of the way back is turned. */
-    const struct adder a = {.records = r,
-                            .law = law,
-                            .seed = mix(seed),
-                            .sign = reflect_is_vv(law) ? -1 : 1,
-                            .is_plain = ends_are_plain(&r->ends),
-                            .ends = ends_of(&r->look, &r->ends, ENDS_OF_PICTURE)};
+    struct adder a = {.records = r,
+                      .law = law,
+                      .seed = mix(seed),
+                      .sign = reflect_is_vv(law) ? -1 : 1,
+                      .is_plain = ends_are_plain(&r->ends),
+                      .ends = ends_of(&r->look, &r->ends, ENDS_OF_PICTURE)};
+    a.received = wave_received(law->channel, &a.ends.back.axes);
     for (uint32_t b = 0; b < r->bounce_count; b++) {
         for (uint32_t i = 0; i < r->bounces[b].count; i++) {
             const struct trace_record *t = &r->bounces[b].records[i];

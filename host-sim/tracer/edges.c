@@ -2,6 +2,7 @@
 
 #include "hs/error.h"
 #include "tracer/mesh_audit.h"
+#include "tracer/wave.h"
 
 #include <stdlib.h>
 
@@ -98,25 +99,45 @@ struct maker {
     struct edge_echoes *echoes;
 };
 
+/* The edge's own waves between the two polarisations: the part along the edge, and that across. */
+static double polarised(const struct maker *k, const struct wedge *w, struct vec radar,
+                        const struct edge_waves *waves)
+{
+    const double lengthwise = vec_dot(radar, w->along), square = 1 - lengthwise * lengthwise;
+    const struct vec across = vec_cross(radar, w->along); /* as long as sqrt(square) */
+    struct vec sent = reflect_is_vv(k->law) ? k->axes.rise : k->axes.across, received = sent;
+    if (k->law->channel != REFLECT_AS_LAW) {
+        sent = wave_sent(k->law->channel, &k->axes);
+        received = wave_received(k->law->channel, &k->axes);
+    }
+    return (waves->soft * vec_dot(sent, w->along) * vec_dot(received, w->along) -
+            waves->hard * vec_dot(sent, across) * vec_dot(received, across)) /
+           square;
+}
+
+/* Straight on, over that of metal. */
+static double complex metal_share(const struct maker *k, const struct wedge *w)
+{
+    const struct trace_record straight_on = {.material = (uint8_t)w->material};
+    return k->law->channel != REFLECT_AS_LAW ? -reflect_pair_of(k->law, &straight_on).hh
+                                             : -reflect_field_of(k->law, &straight_on).specular *
+                                                   (reflect_is_vv(k->law) ? -1 : 1);
+}
+
 /* What a piece of a wedge returns, for a range of 0; 0 where the radar sees it from within. */
 static double complex field_of(const struct maker *k, const struct wedge *w, double piece_m)
 {
     const struct vec radar = vec_scale(k->axes.sight, -1);
-    const struct vec electric = reflect_is_vv(k->law) ? k->axes.rise : k->axes.across;
     const double lengthwise = vec_dot(radar, w->along), square = 1 - lengthwise * lengthwise;
     const double angle = atan2(vec_dot(radar, w->normal), vec_dot(radar, w->face));
     const double phi = angle < 0 ? angle + 2 * pi : angle;
     if (square < 1e-9 || phi > w->angle_rad) {
         return 0;
     }
-    const double aligned = fmin(pow(vec_dot(electric, w->along), 2) / square, 1);
     const struct edge_waves waves = edges_waves(w->angle_rad, phi);
     const double x = 2 * pi * piece_m * lengthwise / k->law->wavelength_m;
-    const struct trace_record straight_on = {.material = (uint8_t)w->material};
-    const double complex metal =
-        -reflect_field_of(k->law, &straight_on).specular * (reflect_is_vv(k->law) ? -1 : 1);
-    return -I * metal * piece_m / sqrt(pi) * (fabs(x) > 1e-6 ? sin(x) / x : 1) *
-           (waves.soft * aligned - waves.hard * (1 - aligned));
+    return -I * metal_share(k, w) * piece_m / sqrt(pi) * (fabs(x) > 1e-6 ? sin(x) / x : 1) *
+           polarised(k, w, radar, &waves);
 }
 
 static bool make_room(struct edge_echoes *e, size_t *room)

@@ -139,10 +139,9 @@ double reflect_raysar_diffuse(const struct reflect_material *m, double theta2)
 }
 
 static double complex fresnel(const struct reflect_law *law, const struct reflect_material *m,
-                              double theta1)
+                              double theta1, bool is_vv)
 {
     const double complex permittivity = m->permittivity - m->loss * I;
-    const bool is_vv = reflect_is_vv(law);
     if (m->coat_m > 0) {
         return (is_vv ? reflect_coat_vv : reflect_coat_hh)(permittivity, m->coat_m,
                                                            law->wavelength_m, theta1);
@@ -185,7 +184,7 @@ struct reflect_shares reflect_record(const struct reflect_law *law, const struct
         return shares(m->specular,
                       reflect_raysar_specular(m, t1, t2, t4) + reflect_raysar_diffuse(m, t2));
     }
-    double specular = square(cabs(fresnel(law, m, t1)));
+    double specular = square(cabs(fresnel(law, m, t1, reflect_is_vv(law))));
     if (law->kind == REFLECT_FRESNEL_HH || law->kind == REFLECT_FRESNEL_VV) {
         return shares(specular, specular * lobe(m, t1, t2, t4) + reflect_raysar_diffuse(m, t2));
     }
@@ -201,11 +200,88 @@ struct reflect_field reflect_field_of(const struct reflect_law *law, const struc
     if (law->kind == REFLECT_RAYSAR) {
         return (struct reflect_field){-sqrt(m->specular), diffuse};
     }
-    const double complex coefficient = fresnel(law, m, t1);
+    const double complex coefficient = fresnel(law, m, t1, reflect_is_vv(law));
     if (law->kind == REFLECT_FRESNEL_HH || law->kind == REFLECT_FRESNEL_VV) {
         return (struct reflect_field){coefficient, diffuse};
     }
     const double rough = fmin(rough_share(law, m, t), 1);
     return (struct reflect_field){coefficient * sqrt(smooth_share(m, law->wavelength_m, t1)),
                                   rough};
+}
+
+/* ---- both polarisations ---- */
+
+static bool is_spm(const struct reflect_law *law)
+{
+    return law->kind == REFLECT_SPM_HH || law->kind == REFLECT_SPM_VV;
+}
+
+struct reflect_pair reflect_pair_of(const struct reflect_law *law, const struct trace_record *t)
+{
+    const struct reflect_material *m = &law->materials[t->material];
+    const double t1 = (double)t->incidence_rad;
+    if (law->kind == REFLECT_RAYSAR) {
+        return (struct reflect_pair){-sqrt(m->specular), sqrt(m->specular)};
+    }
+    const double left = is_spm(law) ? sqrt(smooth_share(m, law->wavelength_m, t1)) : 1;
+    return (struct reflect_pair){left * fresnel(law, m, t1, false),
+                                 left * fresnel(law, m, t1, true)};
+}
+
+double reflect_crossed_share(const struct reflect_law *law, const struct reflect_material *m)
+{
+    const double ks = 2 * pi / law->wavelength_m * m->rms_height_m;
+    const double straight_on =
+        law->kind == REFLECT_RAYSAR ? sqrt(m->specular) : cabs(fresnel(law, m, 0, false));
+    return 0.23 * straight_on * (1 - exp(-ks));
+}
+
+/* In the order of reflect_beta_hh(): what the theory has of a surface, without its spectrum. */
+static struct reflect_rough perturbed(double complex permittivity, double t1, double t2,
+                                      double cosine, double sine)
+{
+    const double complex q1 = root_term(permittivity, t1), q2 = root_term(permittivity, t2);
+    const double complex crossing = (permittivity - 1) * sine;
+    return (struct reflect_rough){
+        .hh = reflect_beta_hh(permittivity, t1, t2, cosine),
+        .hv = crossing * q1 / ((permittivity * cos(t1) + q1) * (cos(t2) + q2)),
+        .vh = crossing * q2 / ((permittivity * cos(t2) + q2) * (cos(t1) + q1)),
+        .vv = -reflect_beta_vv(permittivity, t1, t2, cosine),
+    };
+}
+
+/* sqrt(sigma0 / (4 cos t1)) over |beta|: see reflect_spm_sigma0(). */
+static double perturbed_root(const struct reflect_law *law, const struct reflect_material *m,
+                             double t1, double t2, double cosine)
+{
+    const double k = 2 * pi / law->wavelength_m;
+    const double s1 = sin(t1), s2 = sin(t2);
+    const double kappa_squared = k * k * (s1 * s1 + s2 * s2 - 2 * s1 * s2 * cosine);
+    return k * k * cos(t2) *
+           sqrt(fmax(cos(t1), 0) * reflect_spectrum_at(m, fmax(kappa_squared, 0)) / pi);
+}
+
+/* No more than all of it comes back. */
+static struct reflect_rough scaled(struct reflect_rough r, double root)
+{
+    const double most = root * fmax(cabs(r.hh), cabs(r.vv));
+    const double k = most > 1 ? root / most : root;
+    return (struct reflect_rough){r.hh * k, r.hv * k, r.vh * k, r.vv * k, 0};
+}
+
+struct reflect_rough reflect_rough_of(const struct reflect_law *law, const struct trace_record *t,
+                                      double cosine, double sine)
+{
+    const struct reflect_material *m = &law->materials[t->material];
+    const double t1 = (double)t->incidence_rad, t2 = (double)t->echo_rad;
+    struct reflect_rough rough;
+    if (is_spm(law)) {
+        rough = scaled(perturbed(half_space_of(m), t1, t2, cosine, sine),
+                       perturbed_root(law, m, t1, t2, cosine));
+    } else {
+        const double root = sqrt(reflect_raysar_diffuse(m, t2));
+        rough = (struct reflect_rough){.hh = -root, .vv = root};
+    }
+    rough.crossed = sqrt(reflect_crossed_share(law, m)) * cabs(rough.vv);
+    return rough;
 }

@@ -269,17 +269,43 @@ int setup_scene(const struct setup *s, struct scene *scene)
     return result;
 }
 
-int setup_law(const struct setup *s, const struct trace_records *r, struct reflect_law *law)
+/* Laws that do not say of themselves which polarisation they are of. */
+static const struct {
+    const char *name;
+    enum reflect_kind kind;
+} followed_laws[] = {
+    {"raysar", REFLECT_RAYSAR}, {"fresnel", REFLECT_FRESNEL_HH}, {"spm", REFLECT_SPM_HH}};
+
+static int followed_law(const struct setup *s, struct reflect_law *law)
 {
-    *law = (struct reflect_law){.wavelength_m = r->look.wavelength_m};
+    for (size_t i = 0; i < sizeof followed_laws / sizeof followed_laws[0]; i++) {
+        if (strcmp(s->law, followed_laws[i].name) == 0) {
+            law->kind = followed_laws[i].kind;
+            return 0;
+        }
+    }
+    return hs_error("--law", "give raysar, fresnel or spm",
+                    "with --polarisation there is no law %s", s->law);
+}
+
+static int plain_law(const struct setup *s, struct reflect_law *law)
+{
     for (int kind = 0; kind < REFLECT_KINDS; kind++) {
         if (strcmp(s->law, reflect_kind_names[kind]) == 0) {
             law->kind = (enum reflect_kind)kind;
-            return materials_for(r, s->materials, s->ground, law);
+            return 0;
         }
     }
     return hs_error("--law", "give raysar, fresnel-hh, fresnel-vv, spm-hh or spm-vv",
                     "there is no law %s", s->law);
+}
+
+int setup_law(const struct setup *s, const struct trace_records *r, struct reflect_law *law)
+{
+    *law = (struct reflect_law){.channel = (enum reflect_channel)s->channel,
+                                .wavelength_m = r->look.wavelength_m};
+    const int found = law->channel == REFLECT_AS_LAW ? plain_law(s, law) : followed_law(s, law);
+    return found == 0 ? materials_for(r, s->materials, s->ground, law) : -1;
 }
 
 /* Spread, coarsen and speckle the power of the cells in place. */

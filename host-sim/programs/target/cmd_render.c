@@ -181,14 +181,16 @@ static int trace_model(const struct setup *s, const struct outputs *o, struct tr
     return result;
 }
 
-static int check_ends(const struct trace_records *r, const struct outputs *o, const char *records)
+static int check_ends(const struct setup *s, const struct trace_records *r, const struct outputs *o,
+                      const char *records)
 {
-    const bool needs_plain = o->squint_deg != 0 || !isnan(o->site.latitude_deg);
+    const bool needs_plain = o->squint_deg != 0 || !isnan(o->site.latitude_deg) || s->channel != 0;
     return !needs_plain || ends_are_plain(&r->ends)
                ? 0
-               : hs_error(records, "trace the target again without them",
-                          "was traced with --distance or a receiver apart: --squint and --latitude "
-                          "are of one radar far away");
+               : hs_error(
+                     records, "trace the target again without them",
+                     "was traced with --distance or a receiver apart: --squint, --latitude and "
+                     "--polarisation are of one radar far away");
 }
 
 static int run(const struct setup *s, const char *records, const struct outputs *o)
@@ -199,7 +201,7 @@ static int run(const struct setup *s, const char *records, const struct outputs 
     if (loaded != 0) {
         return HS_EXIT_FAILED;
     }
-    int result = check_ends(&r, o, records);
+    int result = check_ends(s, &r, o, records);
     if (result == 0 && o->squint_deg != 0) {
         squint_records(&r, o->squint_deg);
     }
@@ -226,7 +228,7 @@ int target_cmd_render(int argc, char **argv)
         .zoom = 6, .weighting = FOCUS_TAYLOR, .cut_db = 20, .levels = 256, .site = {NAN, NAN, 0}};
     const char *records = NULL;
     long zoom = 6;
-    enum { OWN = 51, COUNT = OWN + SETUP_OPTIONS + SETUP_ENDS_OPTIONS };
+    enum { OWN = 55, COUNT = OWN + SETUP_OPTIONS + SETUP_ENDS_OPTIONS };
     struct hs_option options[COUNT] = {
         {"records", HS_INPUT, &records, 0, 0, "FILE.trace", "in place of a model", false},
         {"out", HS_OUTPUT, &o.png, 0, 0, "FILE.png", "the picture", false},
@@ -241,6 +243,14 @@ int target_cmd_render(int argc, char **argv)
         HS_CLASHES_ROW("edges", ENDS "|squint"),
         {"weighting", HS_CHOICE, &o.weighting, 0, 0, FOCUS_WEIGHTING_WORDS,
          "of the radar's band, with --coherent", false},
+        {"polarisation", HS_CHOICE, &s.channel, 0, 0, REFLECT_CHANNEL_WORDS,
+         "received and sent: hv receives H of what was sent in V. The electric vector is followed\n"
+         "through all reflections; --law is raysar, fresnel or spm then. law: each reflection is\n"
+         "as the law's name says",
+         false},
+        HS_NEEDS_ROW("polarisation", "coherent"),
+        HS_CLASHES_ROW("polarisation", ENDS),
+        HS_CLASHES_ROW("polarisation", "law=fresnel-hh|law=fresnel-vv|law=spm-hh|law=spm-vv"),
         {"layer", HS_INTEGER, &o.layer, 0, TRACE_BOUNCES_MAX, "N",
          "echoes of the Nth reflection alone; 0: of all", false},
         {"zoom", HS_INTEGER, &zoom, 1, 64, "N", "dots of the PNG a pixel, either way", false},
@@ -296,6 +306,8 @@ int target_cmd_render(int argc, char **argv)
     setup_options(&s, options + OWN);
     setup_ends_options(&s, options + OWN + SETUP_OPTIONS);
     options[OWN].is_required = false; /* the model: there may be records instead */
+    options[OWN + SETUP_MODEL_OPTIONS + SETUP_TRACE_OPTIONS].value_name =
+        REFLECT_KIND_WORDS "|fresnel|spm";
     if (!hs_options_read(&usage, options, COUNT, argc, argv, &exit_code)) {
         return exit_code;
     }

@@ -33,7 +33,10 @@ static int make_notes(const struct setup *s, const struct trace_records *r,
     note_real(&notes[3], "PIXEL_M", (double)s->ratio * r->grid.cell_m);
     note_real(&notes[4], "RESOLUTION_M", s->resolution_m);
     note_text(&notes[5], "WEIGHTING", focus_weighting_names[weighting]);
-    note_text(&notes[6], "LAW", s->law);
+    static const char *const channels[REFLECT_CHANNELS] = {"", " HH", " HV", " VH", " VV"};
+    char law[sizeof notes[6].value];
+    snprintf(law, sizeof law, "%s%s", s->law, channels[s->channel]);
+    note_text(&notes[6], "LAW", law);
     note_text(&notes[7], "ORDER", "slant range, far on top; left of the radar first");
     note_text(&notes[8], "CALIBRATION", "|pixel|^2 of a point: m^2; phase -4 pi range/wavelength");
     const struct trace_ends *e = &r->ends;

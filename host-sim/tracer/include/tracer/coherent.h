@@ -6,6 +6,11 @@
  * 4 pi A^2 / wavelength^2 for a mirror of aperture A. A rough share s of a tube of area a on the
  * plane adds 4 s a, what a white matt surface does for s = 1, with a phase of its own.
  *
+ * POLARISATION. A law without a channel reflects each ray as HH or VV everywhere. One with a
+ * channel (reflect.h) follows the electric vector: every reflection turns it by the place's own
+ * plane of incidence, and so there is HV (wave.h). Of one radar far away; `r` of other ends is
+ * taken as such by laws without a channel alone.
+ *
  * WHAT RAYS CANNOT SHOW. A facet's return beside the specular direction is a sum in which phases
  * turn from ray to ray. Where they turn by more than half a turn, the rays are too far apart: that
  * part is left out. More --rays show more of it. The ground has no end, and so its first reflection
@@ -24,7 +29,8 @@ struct coherent_echo {
 };
 
 /* Call `take` for each echo, wherever it lies, in the order of the records. Phases of rough shares
- * are drawn by `seed`, bounce and ray. Signs are those of backscatter alignment: HH and VV agree
+ * are drawn by `seed`, bounce and ray: the
+ * same for all channels. Signs are those of backscatter alignment: HH and VV agree
  * after an odd number of metal reflections and are opposite after an even one. */
 void coherent_echoes(const struct trace_records *r, const struct reflect_law *law, uint64_t seed,
                      void (*take)(void *ctx, const struct coherent_echo *echo), void *ctx);

@@ -25,6 +25,9 @@
 
 #define EDGES_LEAST_TURN_DEG 15.0
 
+/* A law with a channel (reflect.h) has the parts of both electric vectors, sent and received, in
+ * the place of cos^2 t and sin^2 t. */
+
 /* Ufimtsev's f1 and g1; `wedge_rad` pi..2 pi, `phi_rad` within it. */
 struct edge_waves {
     double soft, hard; /* electric vector along the edge, across it */

@@ -90,8 +90,22 @@ extern const char *const reflect_kind_names[REFLECT_KINDS];
 /* The same words for a table of options. */
 #define REFLECT_KIND_WORDS "raysar|fresnel-hh|fresnel-vv|spm-hh|spm-vv"
 
+/* Received and sent polarisation, in this order: HV receives H of what was sent in V. */
+enum reflect_channel {
+    REFLECT_AS_LAW, /* each reflection by itself is in HH or VV, as the kind says */
+    REFLECT_HH, /* else the electric vector is followed, and the kind's own end does not count */
+    REFLECT_HV,
+    REFLECT_VH,
+    REFLECT_VV,
+    REFLECT_CHANNELS
+};
+
+/* The same words for a table of options. */
+#define REFLECT_CHANNEL_WORDS "law|hh|hv|vh|vv"
+
 struct reflect_law {
     enum reflect_kind kind;
+    enum reflect_channel channel; /* of fields (coherent.h); shares of intensity know none */
     double wavelength_m;
     struct reflect_material materials[TRACE_MATERIALS_MAX]; /* by a record's material */
 };
@@ -115,5 +129,28 @@ struct reflect_field reflect_field_of(const struct reflect_law *law, const struc
 
 /* Does the law have the electric vector in the plane of incidence? */
 bool reflect_is_vv(const struct reflect_law *law);
+
+/* ---- both polarisations, of the place: H is square to the plane of incidence ---- */
+
+/* What a smooth place reflects, less what roughness takes; RaySAR: -+ sqrt F_s, as metal. */
+struct reflect_pair {
+    double complex hh, vv;
+};
+struct reflect_pair reflect_pair_of(const struct reflect_law *law, const struct trace_record *t);
+
+/* Roots of the shares that roughness sends back: by first index received, by second sent. cosine
+ * and sine of the azimuth of the echo, from that of the incidence. Small perturbation has all four
+ * of the theory (Ruck and others, Radar Cross Section Handbook, 1970, p. 703); a diffuse share
+ * keeps its polarisation. crossed: of a scattering with a phase of its own, which turns H into V
+ * and V into H (wave.h). */
+struct reflect_rough {
+    double complex hh, hv, vh, vv;
+    double crossed;
+};
+struct reflect_rough reflect_rough_of(const struct reflect_law *law, const struct trace_record *t,
+                                      double cosine, double sine);
+
+/* q: power of the crossed scattering over that in VV. */
+double reflect_crossed_share(const struct reflect_law *law, const struct reflect_material *m);
 
 #endif

@@ -26,6 +26,7 @@ struct setup {
     bool has_no_ground;
     /* the law */
     const char *law, *materials, *ground;
+    int channel; /* enum reflect_channel; with one, `law` may be fresnel or spm */
     /* the chip */
     double resolution_m, range_db;
     long ratio, looks, seed;
@@ -63,7 +64,8 @@ int setup_scene(const struct setup *s, struct scene *scene);
 int setup_scene_of(const struct setup *s, const struct mesh *m, struct scene *scene); /* loaded */
 struct trace_order setup_order(const struct setup *s, double azimuth_deg);
 
-/* The law that `s` names, for the materials of `r`. Returns 0, or -1 reported. */
+/* The law that `s` names, for the materials of `r`. Returns 0, or -1 reported: there is no such
+ * law, or it names a polarisation and s->channel another, or neither does. */
 int setup_law(const struct setup *s, const struct trace_records *r, struct reflect_law *law);
 
 /* The chip of traced records: power per pixel, near row first; *width and *height pixels. The

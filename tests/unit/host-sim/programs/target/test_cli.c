@@ -53,6 +53,41 @@ TEST(a_command_line_without_sense_ends_with_2)
     assert_int_equal(run("render --model slicy --edges --coherent --distance 99 --csv y.csv"), 2);
 }
 
+/* Crossed power is below that of HH and VV, and of the same size either way; what would be ignored,
+ * or is not known, is refused. */
+TEST(a_polarisation_is_followed_with_laws_that_name_none)
+{
+    assert_int_equal(run("render --model slicy --polarisation hv --csv y.csv 2>/dev/null"), 2);
+    assert_int_equal(
+        run("render --model slicy --coherent --polarisation hv --distance 50 --csv y.csv "
+            "2>/dev/null"),
+        2);
+    assert_int_equal(
+        run("render --model slicy --coherent --polarisation hv --law spm-hh --csv y.csv "
+            "2>/dev/null"),
+        2);
+    assert_int_equal(run("render --model slicy --coherent --law spm --csv y.csv 2>errors"), 1);
+    assert_int_equal(shell("grep -q 'there is no law spm; give' errors && ! test -e y.csv"), 0);
+    assert_int_equal(run("trace --model slicy --azimuth 20 --distance 50 --out near.trace "
+                         ">/dev/null"),
+                     0);
+    assert_int_equal(run("render --records near.trace --coherent --polarisation hv --csv y.csv "
+                         "2>errors"),
+                     1);
+    assert_int_equal(shell("grep -q 'are of one radar far away' errors && ! test -e y.csv"), 0);
+    assert_int_equal(
+        shell(
+            "for p in hh hv vh vv; do ../../bin/landmass-target render --model tank --azimuth 40 "
+            "--cells 160 --coherent --law fresnel --polarisation $p --csv $p.csv --complex $p.ntf "
+            ">/dev/null || exit 1; gdalinfo $p.ntf | grep -qi \"LAW=fresnel $p\" || exit 1; "
+            "awk -F, '{ for (i = 1; i <= NF; i++) s += $i * $i } END { print s }' $p.csv "
+            ">$p.sum; done; "
+            "awk -v hh=$(cat hh.sum) -v hv=$(cat hv.sum) -v vh=$(cat vh.sum) -v vv=$(cat vv.sum) "
+            "'BEGIN { exit !(hv > 0 && hv < hh / 4 && vh < vv / 4 && hv < 4 * vh && vh < 4 * hv) "
+            "}'"),
+        0);
+}
+
 /* An upright plate from 65 degrees above: optics sends it away, its edges do not. Their layer is
  * the first.
  */
