@@ -65,6 +65,15 @@ struct side {
     double *weights;      /* owned: by frequency, in the order of FFTW */
 };
 
+void focus_window(enum focus_weighting weighting, double *window, int count)
+{
+    hs_taylor(window, count, weighting == FOCUS_TAYLOR ? taylor_db : 0, taylor_n_bar);
+    for (int i = 0; i < count; i++) {
+        const double turn = 2 * pi * (i - (count - 1) / 2.0) / count;
+        window[i] = weighting == FOCUS_HAMMING ? 0.54 + 0.46 * cos(turn) : window[i];
+    }
+}
+
 /* Weights of the band's `count` frequencies, the middle one 0; and the kernel divided out. */
 static int weigh(struct side *s, enum focus_weighting weighting, int count)
 {
@@ -74,10 +83,8 @@ static int weigh(struct side *s, enum focus_weighting weighting, int count)
         free(window);
         return hs_error("picture", "give fewer --cells", "out of memory");
     }
-    hs_taylor(window, count, weighting == FOCUS_TAYLOR ? taylor_db : 0, taylor_n_bar);
+    focus_window(weighting, window, count);
     for (int i = 0; i < count; i++) {
-        const double turn = 2 * pi * (i - (count - 1) / 2.0) / count;
-        window[i] = weighting == FOCUS_HAMMING ? 0.54 + 0.46 * cos(turn) : window[i];
         sum += window[i];
     }
     for (int i = 0; i < count; i++) {

@@ -265,7 +265,9 @@ int target_cmd_render(int argc, char **argv)
          "of a radar that flies level, the target on its left; positive: the target is ahead",
          false},
         {"latitude", HS_REAL, &o.site.latitude_deg, -89, 89, "DEG",
-         "of the target, of WGS84: puts --complex FILE.tif in its place on earth", false},
+         "of the target, of WGS84: puts --complex FILE.tif in its place on earth, and makes\n"
+         "FILE.ntf a SICD",
+         false},
         {"longitude", HS_REAL, &o.site.longitude_deg, -180, 180, "DEG", "likewise", false},
         {"heading", HS_REAL, &o.site.heading_deg, -360, 360, "DEG",
          "of the target's nose, clockwise from north", false},

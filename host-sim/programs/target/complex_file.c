@@ -1,5 +1,7 @@
 #include "complex_file.h"
 
+#include "sicd.h"
+
 #include "gis/complex_raster.h"
 #include "hs/error.h"
 #include "tracer/ends.h"
@@ -76,6 +78,27 @@ static struct db_complex_place place_of(const struct complex_site *site,
     return p;
 }
 
+/* Rows away from the radar, columns to its left: the chip from its last column to its first. */
+static int write_sicd(const struct sicd *s, const char *path, const float complex *chip)
+{
+    struct db_sicd sicd;
+    char *text = sicd_text(s, sicd.corners);
+    float complex *turned = malloc((size_t)s->width * (size_t)s->height * sizeof *turned);
+    int result = -1;
+    if (text && turned) {
+        for (int i = 0; i < s->width * s->height; i++) {
+            turned[i] = chip[i / s->width * s->width + s->width - 1 - i % s->width];
+        }
+        sicd.text = text;
+        result = db_sicd_write(path, turned, s->width, s->height, &sicd);
+    } else if (text) {
+        hs_error(path, "give fewer --cells", "out of memory");
+    }
+    free(text);
+    free(turned);
+    return result;
+}
+
 int complex_file_write(const struct setup *s, const struct trace_records *r,
                        enum focus_weighting weighting, const struct complex_site *site,
                        const char *path, const float complex *chip)
@@ -83,6 +106,13 @@ int complex_file_write(const struct setup *s, const struct trace_records *r,
     struct db_complex_note notes[DB_COMPLEX_NOTES_MAX];
     const size_t width = r->grid.cells_across / (uint32_t)s->ratio;
     const size_t height = r->grid.cells_range / (uint32_t)s->ratio;
+    const double pixel_m = (double)s->ratio * r->grid.cell_m;
+    const struct db_complex_place place =
+        site ? place_of(site, r, pixel_m) : (struct db_complex_place){0};
+    if (site && db_complex_is_nitf(path)) {
+        const struct sicd sicd = {s, r, weighting, site, (int)width, (int)height, place.degrees};
+        return write_sicd(&sicd, path, chip);
+    }
     float complex *turned = malloc(width * height * sizeof *turned);
     if (!turned) {
         return hs_error(path, "give fewer --cells", "out of memory");
@@ -91,9 +121,6 @@ int complex_file_write(const struct setup *s, const struct trace_records *r,
         memcpy(turned + row * width, chip + (height - 1 - row) * width, width * sizeof *turned);
     }
     const int count = make_notes(s, r, weighting, notes);
-    const double pixel_m = (double)s->ratio * r->grid.cell_m;
-    const struct db_complex_place place =
-        site ? place_of(site, r, pixel_m) : (struct db_complex_place){0};
     const int result =
         db_complex_write(path, turned, (int)width, (int)height, notes, count, site ? &place : NULL);
     free(turned);

@@ -31,6 +31,9 @@ struct focus_order {
 /* Cycles a metre: width of the band that has that resolution under that weighting. */
 double focus_band(enum focus_weighting weighting, double resolution_m);
 
+/* Weights of the band's `count` frequencies, low to high. */
+void focus_window(enum focus_weighting weighting, double *window, int count);
+
 /* The chip of cells_across / ratio by cells_range / ratio pixels, near row first; pixel (column,
  * row) is the middle of its cells. A point of cross section s has |pixel|^2 = s at its peak.
  * Returns it, free() it, or NULL with the error reported: pixels too coarse for the band, a
