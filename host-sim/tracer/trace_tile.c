@@ -207,7 +207,7 @@ int trace_tiles_open(struct trace_tiles *t, const struct scene *scene,
     t->tile_rows = columns < TILE_RAYS ? TILE_RAYS / columns : 1;
     t->tile_rays = t->tile_rows * columns;
     t->tile_count = (rows + t->tile_rows - 1) / t->tile_rows;
-    t->is_drawn = t->is_plain && scene->triangle_count < columns * rows;
+    t->is_drawn = t->is_plain && !order->casts_all && scene->triangle_count < columns * rows;
     if (t->is_drawn && open_projections(t) != 0) {
         trace_tiles_close(t);
         return -1;

@@ -64,14 +64,16 @@ compare() { # model
     pov_scene
     pov_s=$(for _ in 1 2 3 4 5 6 7; do trace_with_pov; done | sort -n | head -n 1)
     awk -v model="$1" -v primary="$(value primary_rays)" -v rays="$(value rays)" -v ms="$(value trace_cpu_ms)" \
-        -v embree="$(value embree_cpu_ms)" -v pov="$pov_s" 'BEGIN {
-        printf "  %-6s %8d %9d %9.1f %8.0f %9.1f %8.1f %8.1f\n", model, primary, rays, ms, pov * 1e3, embree,
-               rays / ms / 1e3, pov * 1e3 / ms
+        -v cast="$(value cast_cpu_ms)" -v embree="$(value embree_cpu_ms)" -v pov="$pov_s" 'BEGIN {
+        printf "  %-6s %8d %9d %9.1f %8.0f %9.1f %8.1f %7.0f%%\n", model, primary, rays, cast, pov * 1e3, embree,
+               pov * 1e3 / cast, 100 * embree / cast
+        printf "  %-6s %8s %9s %9.1f %8s %9s %8.1f %7.0f%%\n", "", "", "drawn:", ms, "", "", pov * 1e3 / ms, 100 * embree / ms
     }'
 }
 
 echo "A picture of up to five reflections: least processor time of landmass-target, of POV-Ray, and of Embree for bare rays"
-echo "  model   primary  all rays  ours, ms  POV, ms  bare, ms   Mray/s  times POV"
+echo "Every ray cast; then as it is done, with first reflections drawn"
+echo "  model   primary  all rays  ours, ms  POV, ms  bare, ms  times POV  of bare"
 if command -v povray > /dev/null; then
     compare slicy
     compare tank

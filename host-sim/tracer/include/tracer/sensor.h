@@ -19,6 +19,7 @@ struct trace_order {
     uint32_t bounces;       /* 1..TRACE_BOUNCES_MAX */
     uint32_t threads;       /* 1..64; the records do not depend on it */
     struct trace_ends ends; /* 0: one radar, far away */
+    bool casts_all;         /* nothing is drawn: for measurements. The records are as good */
 };
 
 /* The plane that sees the grid's ground and every part of the scene's bounds that could be focused
