@@ -604,9 +604,15 @@ static void mark_hidden(struct lm_sar *s, uint32_t number, const struct lm_line 
                                 s->grid.tangent_bits, s->traced - s->overscan);
 }
 
+static bool is_hidden_known(const struct lm_sar *s)
+{
+    return s->shaded_known == s->target_patch.scatterer_count;
+}
+
 /* Test which chips and displaced movers are hidden before the first line is sampled: they are
- * displayed on earlier lines than the one that holds their position. Traces at most `at_most`
- * lines. True when all are tested. */
+ * displayed on earlier lines than the one that holds their position. Then, which scatterers stand
+ * in the shadow of others' chips. Traces at most `at_most` lines, or looks at so many scatterers.
+ * True when all are tested. */
 static bool find_hidden(struct lm_sar *s, struct lm_tile_cache *tiles, uint32_t at_most,
                         struct lm_line *line)
 {
@@ -622,7 +628,13 @@ static bool find_hidden(struct lm_sar *s, struct lm_tile_cache *tiles, uint32_t 
             traced++;
         }
     }
-    return s->hidden_known == s->target_patch.scatterer_count;
+    if (s->hidden_known != s->target_patch.scatterer_count) {
+        return false;
+    }
+    for (; !is_hidden_known(s) && traced < at_most; s->shaded_known++) {
+        traced += lm_target_patch_mark_shaded(&s->target_patch, s->shaded_known, &s->geometry);
+    }
+    return is_hidden_known(s);
 }
 
 static int16_t *ring_line(struct lm_sar *s, uint32_t number)
@@ -687,8 +699,7 @@ static void sample_some(struct lm_sar *s, struct lm_tile_cache *tiles, uint32_t 
     if (!s->has_target_patch) {
         find_target_patch(s, tiles);
     }
-    if (s->hidden_known == s->target_patch.scatterer_count ||
-        find_hidden(s, tiles, at_most, line)) {
+    if (is_hidden_known(s) || find_hidden(s, tiles, at_most, line)) {
         sample_lines(s, tiles, fx_min_u32(s->sampled + at_most, end), line);
     }
 }
@@ -716,7 +727,8 @@ const int16_t *lm_sar_draw_line(struct lm_sar *s, struct lm_tile_cache *tiles,
 
 void lm_sar_restart(struct lm_sar *s)
 {
-    s->line = s->sampled = s->summed = s->hidden_known = s->second_foreground = 0;
+    s->line = s->sampled = s->summed = s->second_foreground = 0;
+    s->hidden_known = s->shaded_known = 0;
     s->has_target_patch = false;
     lm_side_lobes_clear(&s->side_lobes, &s->radar->sar.side_lobes);
     lm_patch_floor_clear(&s->floor);

@@ -222,7 +222,7 @@ static void note_scatterers(struct lm_target_patch *p, uint32_t target,
 }
 
 /* Replace the target's single scatterer by its chip. */
-static void add_chip(struct lm_target_patch *p, const struct lm_chip_slot *slot, fx_bam_t turn,
+static void add_chip(struct lm_target_patch *p, const struct lm_target_candidate *candidate,
                      const struct lm_patch_geometry *g, const struct patch_position *position)
 {
     struct lm_patch_scatterer *scatterer = &p->scatterer[p->scatterer_count - 1];
@@ -236,7 +236,10 @@ static void add_chip(struct lm_target_patch *p, const struct lm_chip_slot *slot,
     chip->scatterer = p->scatterer_count - 1;
     chip->shadow_across_cells_q8 = scatterer->across_cells_q8 - in_cells(g, position->shift_m_q8);
     chip->area_dbm2_q8 = area_dbm2_q8(g, position->range_m_q8);
-    lm_chip_patch_set(&chip->patch, slot, turn, &cells_there, &p->target[scatterer->target].smear);
+    chip->range_m_q8 = position->range_m_q8;
+    chip->foot_m_q10 = lm_m_q10_of_m_q6(candidate->elevation_m_q6);
+    lm_chip_patch_set(&chip->patch, candidate->chip, candidate->chip_turn, &cells_there,
+                      &p->target[scatterer->target].smear);
     scatterer->is_chip = p->target[scatterer->target].has_chip = true;
     const struct lm_chip_reach *lit = &chip->patch.lit, *dark = &chip->patch.dark;
     const uint32_t cells = fx_max_u32(fx_abs_u32(lit->right), fx_abs_u32(lit->right_end)) + 1;
@@ -258,7 +261,6 @@ void lm_target_patch_set(struct lm_target_patch *p, const struct lm_target_candi
     memset(p, 0, sizeof *p);
     for (uint32_t i = 0; i < candidates->count; i++) {
         const struct lm_target_candidate *candidate = &candidates->candidate[i];
-        const struct lm_chip_slot *slot = lm_chip_of(candidate);
         struct lm_patch_target *t = &p->target[p->target_count];
         struct patch_position position;
         if (find_position(g, candidate, &position)) {
@@ -266,8 +268,8 @@ void lm_target_patch_set(struct lm_target_patch *p, const struct lm_target_candi
                                    lm_cells_q8_of_m_q8(position.walk_m_q8, g->cell_m_q8));
             t->begin = p->scatterer_count;
             add_returns(p, &candidates->set, candidate, g, &position, (uint8_t)p->target_count);
-            if (slot) {
-                add_chip(p, slot, candidate->chip_turn, g, &position);
+            if (lm_chip_of(candidate)) {
+                add_chip(p, candidate, g, &position);
             }
             t->end = p->scatterer_count;
             note_scatterers(p, p->target_count, g);
@@ -297,10 +299,59 @@ void lm_target_patch_mark_hidden(struct lm_target_patch *p, uint32_t line, const
                 /* Behind the last cell, the whole line may hide it. */
                 const uint32_t before = fx_min_u32((uint32_t)scatterer->cell, cells);
                 scatterer->is_hidden =
+                    scatterer->is_shaded ||
                     scatterer->tangent_q38 <= horizon[before] * ((int64_t)1 << (38 - bits));
             }
         }
     }
+}
+
+/* Is a cell of a chip's line more than half in its shadow? */
+static bool is_dark(const struct lm_patch_chip *chip, int32_t right_cells_q8, int32_t beyond)
+{
+    return beyond >= chip->patch.dark.beyond && beyond < chip->patch.dark.beyond_end &&
+           lm_chip_patch_shadow(&chip->patch, right_cells_q8, lm_cells_q8_of_cells(beyond)) >
+               LM_CHIP_SHADOW_ALL / 2;
+}
+
+/* The shadow ends within the chip, at most 64 pixels of 16 m away. Cells are within 2^23 either way,
+ * and their difference within 2^24; where it is dark the range of its end is below 2^27. */
+static bool is_below_shadow(const struct lm_patch_chip *chip, const struct lm_patch_scatterer *from,
+                            const struct lm_patch_scatterer *at, const struct lm_patch_geometry *g)
+{
+    const int32_t right_cells_q8 = lm_cells_q8_of_cells(at->line) - chip->shadow_across_cells_q8;
+    int32_t end = at->cell - from->cell;
+    if (!is_dark(chip, right_cells_q8, end)) {
+        return false;
+    }
+    do {
+        end++;
+    } while (is_dark(chip, right_cells_q8, end));
+    const int64_t end_m_q8 = chip->range_m_q8 + (int64_t)end * g->cell_m_q8;
+    return at->tangent_q38 <=
+           lm_target_view_tangent_q38(chip->foot_m_q10, (uint32_t)end_m_q8, &g->heights);
+}
+
+bool lm_target_patch_mark_shaded(struct lm_target_patch *p, uint32_t number,
+                                 const struct lm_patch_geometry *g)
+{
+    struct lm_patch_scatterer *at = &p->scatterer[number];
+    bool is_looked_at = false;
+    if (at->line < 0 || at->line >= (int32_t)g->lines) {
+        return false;
+    }
+    for (uint32_t left = p->on_line[at->line]; left != 0 && !at->is_shaded;) {
+        const uint32_t target = take_next(&left);
+        const struct lm_patch_chip *chip = &p->chip[target];
+        const struct lm_patch_scatterer *from = &p->scatterer[chip->scatterer];
+        if (p->target[target].has_chip && target != at->target &&
+            (from->is_shaded || !from->is_hidden)) {
+            at->is_shaded = is_below_shadow(chip, from, at, g);
+            is_looked_at = true;
+        }
+    }
+    at->is_hidden |= at->is_shaded;
+    return is_looked_at;
 }
 
 /* Slice of the dwell: its offset from the scatterer, its share of the power, and its stretch.

@@ -146,6 +146,7 @@ struct lm_sar {
     uint32_t sampled, summed;        /* lines in the ring; lines that have the scatterers added */
     bool has_target_patch;           /* true once the targets' scatterers were computed */
     uint32_t hidden_known;           /* scatterers tested for being hidden, before line 0 */
+    uint32_t shaded_known;           /* and then, for the shadows of other targets */
     int32_t shadow_db_q8;            /* level of a shadow on the line sampled last, dB of gamma */
     struct lm_side_lobes side_lobes; /* of the ground */
     struct lm_target_patch target_patch; /* targets, from the first line on */

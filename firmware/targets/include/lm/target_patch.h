@@ -3,6 +3,7 @@
  *
  * Order of the calls:
  * - for the patch: lm_target_patch_set;
+ * - for each scatterer, when terrain's hiding of chips is known: lm_target_patch_mark_shaded;
  * - for each line, before speckle and noise: lm_target_patch_shade, lm_target_patch_add_chips;
  * - for each line, when its horizon is known: lm_target_patch_mark_hidden;
  * - for each line, after speckle and noise: lm_target_patch_add_scatterers.
@@ -67,10 +68,10 @@ struct lm_patch_scatterer {
     fx_bam_t phase;
     int64_t tangent_q38; /* tangent of elevation at which it appears */
     int32_t line, cell;
-    uint8_t target;    /* its target: index in lm_target_patch.target */
-    bool is_displaced; /* by Doppler: it may appear on a line before its own */
-    bool is_hidden;
-    bool is_chip; /* it stands for a chip, and is not spread itself */
+    uint8_t target;            /* its target: index in lm_target_patch.target */
+    bool is_displaced;         /* by Doppler: it may appear on a line before its own */
+    bool is_hidden, is_shaded; /* by anything; by another target's chip */
+    bool is_chip;              /* it stands for a chip, and is not spread itself */
 };
 
 /* Target in or near a patch. Its scatterers add as phasors. */
@@ -86,6 +87,7 @@ struct lm_patch_chip {
     uint32_t scatterer; /* index of the scatterer that has its position and whether it is hidden */
     int32_t shadow_across_cells_q8; /* of the true origin: Doppler does not displace a shadow */
     int32_t area_dbm2_q8;           /* area of a clutter cell there */
+    int32_t range_m_q8, foot_m_q10; /* of the true origin, along the look; its elevation */
 };
 
 /* Most cells of a line that chips are added to. It bounds the line's cost. */
@@ -121,6 +123,13 @@ void lm_target_patch_set(struct lm_target_patch *p, const struct lm_target_candi
  * before its first cell stay visible. */
 void lm_target_patch_mark_hidden(struct lm_target_patch *p, uint32_t line, const int32_t *horizon,
                                  uint32_t bits, uint32_t cells);
+
+/* Mark scatterer `number` if it stands in the shadow of another target's chip, and no higher than
+ * the ray above it: the one that meets level ground at the hider's foot where the shadow ends. A
+ * chip that terrain hides shades nothing. True if a chip's shadow was looked at. Cost: for each
+ * chip that is looked at 180 instructions, and 180 more for each cell of its shadow behind. */
+bool lm_target_patch_mark_shaded(struct lm_target_patch *p, uint32_t number,
+                                 const struct lm_patch_geometry *g);
 
 /* Add the scatterers to the levels of line `line`, from cell g->first to g->cells - 1. What stays
  * below `least_db_q8` is left out. Cost: 200 instructions for a scatterer that reaches the line,
