@@ -649,11 +649,8 @@ static void sample_lines(struct lm_sar *s, struct lm_tile_cache *tiles, uint32_t
     for (; s->sampled < end; s->sampled++) {
         int16_t *const level_db_q8 = ring_line(s, s->sampled);
         lm_sar_sample_line(s, tiles, s->sampled, line, level_db_q8);
-        /* A chip has the side lobes that were baked into it: on its lines none are found. */
-        const bool has_chip = s->chips && s->target_patch.on_line[s->sampled] != 0;
         lm_side_lobes_find(&s->side_lobes, s->sampled, level_db_q8 + LM_SAR_GUARD,
-                           s->radar->sar.cells, has_chip ? LM_SIDE_LOBES_NONE : s->shadow_db_q8,
-                           s->command.centre.longitude);
+                           s->radar->sar.cells, s->shadow_db_q8, s->command.centre.longitude);
         mark_hidden(s, s->sampled, line);
     }
 }

@@ -195,7 +195,7 @@ void lm_side_lobes_find(struct lm_side_lobes *s, uint32_t line, const int16_t *l
 {
     s->line[line % LM_SIDE_LOBES_LINES].count = 0;
     s->found = line + 1;
-    if (s->config->a_line != 0 && shadow_db_q8 < LM_SIDE_LOBES_NONE) {
+    if (s->config->a_line != 0) {
         struct search of = {.s = s,
                             .level_db_q8 = level_db_q8,
                             .line = line,

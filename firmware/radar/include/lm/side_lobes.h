@@ -1,4 +1,4 @@
-/* Side lobes of the map: strong returns of the ground have the point response, as targets have. The
+/* Side lobes of the map: strong returns of the ground and of chips have the point response. The
  * stage finds the strongest cells of each line of a patch, and gives their side lobes to the cells
  * along and across. Law: docs/EQUATIONS.md, "Side lobes of the ground".
  *
@@ -54,9 +54,6 @@ struct lm_side_lobes {
 
 /* Forget all lines. `config` is borrowed until the next call. Cost: some 7,000 instructions. */
 void lm_side_lobes_clear(struct lm_side_lobes *s, const struct lm_side_lobe_config *config);
-
-/* Shadow of a line on which none are to be found. */
-#define LM_SIDE_LOBES_NONE INT32_MAX
 
 /* Find the strong cells of line `line`, which is the one after the last. A cell is strong if its
  * level is the largest within LM_RESPONSE_REACH / 2 cells along, and stands as high over a shadow,
