@@ -314,8 +314,8 @@ static bool is_dark(const struct lm_patch_chip *chip, int32_t right_cells_q8, in
                LM_CHIP_SHADOW_ALL / 2;
 }
 
-/* The shadow ends within the chip, at most 64 pixels of 16 m away. Cells are within 2^23 either way,
- * and their difference within 2^24; where it is dark the range of its end is below 2^27. */
+/* The shadow ends within the chip, at most 64 pixels of 16 m away. Cells are within 2^23 either
+ * way, and their difference within 2^24; where it is dark the range of its end is below 2^27. */
 static bool is_below_shadow(const struct lm_patch_chip *chip, const struct lm_patch_scatterer *from,
                             const struct lm_patch_scatterer *at, const struct lm_patch_geometry *g)
 {

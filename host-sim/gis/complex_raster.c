@@ -133,8 +133,8 @@ int db_complex_write(const char *path, const float complex *pixels, int width, i
 
 /* ---- SICD ---- */
 
-/* Header of the segment: version, security and length, then the 773 characters that SICD puts there,
- * each field filled up with blanks. */
+/* Header of the segment: version, security and length, then the 773 characters that SICD puts
+ * there, each field filled up with blanks. */
 static void put_segment_head(FILE *out)
 {
     const struct {

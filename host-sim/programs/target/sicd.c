@@ -137,8 +137,8 @@ static void put_weights(FILE *out, enum focus_weighting weighting)
     static const char *const names[FOCUS_WEIGHTINGS] = {
         "<WindowName>UNIFORM</WindowName>",
         "<WindowName>HAMMING</WindowName>",
-        "<WindowName>TAYLOR</WindowName><Parameter name=\"NBAR\">4</Parameter>"
-        "<Parameter name=\"SLL\">-35</Parameter>",
+        ("<WindowName>TAYLOR</WindowName><Parameter name=\"NBAR\">4</Parameter>"
+         "<Parameter name=\"SLL\">-35</Parameter>"),
     };
     double weights[WEIGHTS];
     fprintf(out, "<WgtType>%s</WgtType>", names[weighting]);
