@@ -206,8 +206,8 @@ void lm_side_lobes_find(struct lm_side_lobes *s, uint32_t line, const int16_t *l
     }
 }
 
-/* Add a side lobe, if it is not 25 dB below what is there. The sum, which is not below that, is held
- * within 16 bits. */
+/* Add a side lobe, if it is not 25 dB below what is there. The sum, which is not below that, is
+ * held within 16 bits. */
 static inline void add(int16_t *level_db_q8, int32_t side_lobe)
 {
     const int32_t there = *level_db_q8;

@@ -298,7 +298,7 @@ static int draw_sheets(const struct shown *s, const struct scored *scored, doubl
     }
     free(order);
     for (int k = 0; k < count && result == 0; k += SHOWN) {
-        char name[16], path[4096];
+        char name[32], path[4096];
         snprintf(name, sizeof name, "sheet-%d.png", k / SHOWN + 1);
         result = hs_output_path(path, sizeof path, folder, name) == 0
                      ? draw_sheet(s, scored, which + k, count - k < SHOWN ? count - k : SHOWN, gain,

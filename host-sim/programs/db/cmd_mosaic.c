@@ -222,7 +222,7 @@ static int copy_strip(const struct strip *s, struct db_row_writer *writer, void 
 
 static int copy_strips(struct mosaic *m, struct db_raster_out *out)
 {
-    struct db_row_writer writer = {NULL};
+    struct db_row_writer writer = {0};
     struct hs_progress progress;
     int result = db_row_writer_init(&writer, out);
     void *rows = result == 0 ? malloc(DB_STRIP_WRITE * writer.row_bytes) : NULL;

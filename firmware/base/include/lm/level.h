@@ -6,7 +6,8 @@
 #include <stdint.h>
 
 /* Level of a cell in shadow, which has no echo: -128 dB. Lines of levels are held in 16 bits, of
- * which this is the lowest number: what is darker counts as shadow, what is above 128 dB as that. */
+ * which this is the lowest number: what is darker counts as shadow, what is above 128 dB as that.
+ */
 enum { LM_LEVEL_SHADOW = INT16_MIN };
 
 #endif

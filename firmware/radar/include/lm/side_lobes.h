@@ -30,9 +30,9 @@ enum {
 
 _Static_assert(LM_SIDE_LOBES_LINES >= 3 * LM_RESPONSE_REACH, "those before and those ahead");
 
-/* Strong cell: its level with speckle, and where in the cell its point lies, each way: place 0..7 is
- * an odd sixteenth, from 7/16 before the middle to 7/16 behind it. What is kept is where the place's
- * side lobes begin, in side_db_q8 below. */
+/* Strong cell: its level with speckle, and where in the cell its point lies, each way: place 0..7
+ * is an odd sixteenth, from 7/16 before the middle to 7/16 behind it. What is kept is where the
+ * place's side lobes begin, in side_db_q8 below. */
 struct lm_strong_cell {
     int16_t cell, level_db_q8;
     uint16_t right, beyond;

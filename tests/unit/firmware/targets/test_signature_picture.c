@@ -179,7 +179,7 @@ static size_t draw_all(struct fixture *f, const struct lm_target_set *set, doubl
     assert_int_equal(lm_sar_start(&f->sar, &f->radar, &f->world.db, &command, &scene), LM_OK);
     assert_true(f->sar.lines <= LM_PATCH_LINES_MAX);
     for (uint32_t k = 0; k < f->sar.lines; k++) {
-        const int32_t *level_q8 = lm_sar_draw_line(&f->sar, &f->world.tiles, &f->tone, &f->line);
+        const int16_t *level_q8 = lm_sar_draw_line(&f->sar, &f->world.tiles, &f->tone, &f->line);
         shadow_db[k] = f->sar.shadow_db_q8 / 256.0;
         for (int c = 0; c < SIDE; c++) {
             level_db[k * SIDE + (uint32_t)c] = level_q8[LM_SAR_GUARD + c] / 256.0;
