@@ -140,7 +140,7 @@ TEST_WITH(a_chip_in_the_shadow_of_another_is_not_drawn_and_throws_none, set_up, 
         const struct spot here = {0, 0, 0};
         struct lm_target targets[2] = {target_with_signature(46, 11, 0),
                                        target_with_signature(46, 11, 0)};
-        int32_t level_q8[LM_CELLS_ROOM];
+        int16_t level_q8[LM_CELLS_ROOM];
         put_at(&targets[0], &here);
         put_at(&targets[1], &spots[i]);
         make_patch(f, targets, 2, false);
