@@ -177,7 +177,7 @@ static void search_groups(struct search *of)
         key[n] = highest_db_q8[n] * (1 << GROUPS_LOG2) + (int32_t)((1u << GROUPS_LOG2) - 1 - n);
     }
     for (uint32_t turn = 0; turn < groups; turn++) {
-        int32_t most = key[0];
+        int32_t most = INT32_MIN;
         for (uint32_t n = 0; n < room; n++) {
             most = fx_max_i32(most, key[n]);
         }

@@ -20,10 +20,18 @@ void lm_k_powers_of_levels(const int16_t *restrict level_db_q8, uint32_t *restri
 
 uint32_t lm_k_sum_powers(const int16_t *level_db_q8, int16_t most_db_q8, uint32_t count)
 {
+    enum { PART = 64 };
     uint32_t sum_q24 = 0;
-    for (uint32_t i = 0; i < count; i++) {
-        const int32_t over_db_q8 = level_db_q8[(int32_t)(i * LM_K_STRIDE)] - most_db_q8;
-        sum_q24 += fx_power_q24_vec(fx_min_i32(over_db_q8, 0));
+    for (uint32_t first = 0; first < count; first += PART) {
+        /* Side by side, so that the loop over powers becomes vectors. */
+        const uint32_t cells = fx_min_u32(count - first, PART);
+        int32_t over_db_q8[PART];
+        for (uint32_t i = 0; i < cells; i++, level_db_q8 += LM_K_STRIDE) {
+            over_db_q8[i] = fx_min_i32(*level_db_q8 - most_db_q8, 0);
+        }
+        for (uint32_t i = 0; i < cells; i++) {
+            sum_q24 += fx_power_q24_vec(over_db_q8[i]);
+        }
     }
     return sum_q24;
 }

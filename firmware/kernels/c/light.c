@@ -21,7 +21,7 @@ struct work {
     int32_t tangent[LM_LANES + LM_CELLS_ROOM]; /* of the cell's top */
     int32_t of_four[LM_LANES + LM_CELLS_ROOM]; /* the largest of the cell's and the three before */
     int32_t horizon[LM_LANES + LM_CELLS_ROOM]; /* before the cell */
-    int32_t shown_db_q8[LM_CELLS_ROOM];        /* by cell: its level but for rise and edges */
+    int32_t level_db_q8[LM_CELLS_ROOM];        /* by cell; first without rise and edges */
 };
 _Static_assert(sizeof(struct work) == LM_K_LIGHT_WORK * sizeof(int32_t), "the scratch is lent");
 
@@ -61,7 +61,7 @@ static void take_tops(const struct lm_k_lit_line *line, uint32_t end, struct wor
         w->tangent[LM_LANES + i] = lm_k_tangent(&tops, i, height_m_q14);
         const int32_t class_index = (int32_t)((cell >> 4) % LM_K_CODES);
         w->kind[LM_LANES + i] = words.kind[class_index];
-        w->shown_db_q8[i] = (int32_t)(cell >> 8 & 255) * LM_GAMMA_CODE_STEP_DB_Q8 +
+        w->level_db_q8[i] = (int32_t)(cell >> 8 & 255) * LM_GAMMA_CODE_STEP_DB_Q8 +
                             ((int32_t)cell >> 16) + LM_LEVEL_SHADOW +
                             fx_sat_i16(gain_db_q8[i] + words.gain_db_q8[class_index]);
     }
@@ -98,8 +98,7 @@ static void max_of_four(uint32_t end, struct work *w)
  * before a cell is the largest of eight tangents and of the horizon before those: eight neighbours
  * wait for the eight before them, and not a cell for the one before it. It rises by less than 2^31:
  * see `start`. Returns whether some cell is behind a shore. */
-static bool light(uint32_t end, struct work *restrict w, int32_t *restrict line_horizon,
-                  int16_t *restrict level_db_q8)
+static bool light(uint32_t end, struct work *restrict w, int32_t *restrict line_horizon)
 {
     int32_t left = 0;
     for (uint32_t i = 0; i < end; i++) {
@@ -109,12 +108,20 @@ static bool light(uint32_t end, struct work *restrict w, int32_t *restrict line_
         const int32_t horizon = fx_max_i32(of_eight, w->horizon[at - LM_LANES]);
         const int32_t next = fx_max_i32(horizon, w->tangent[at]);
         const int32_t edge_db_q8 = kind != kind_before ? kind >> LM_K_MARK_BITS : 0;
-        const int32_t lit_db_q8 = w->shown_db_q8[i] + edge_db_q8 + fx_db_q8_vec_i32(next - horizon);
+        const int32_t lit_db_q8 = w->level_db_q8[i] + edge_db_q8 + fx_db_q8_vec_i32(next - horizon);
         w->horizon[at] = line_horizon[i] = horizon;
-        level_db_q8[i] = next != horizon ? fx_sat_i16(lit_db_q8) : LM_LEVEL_SHADOW;
+        w->level_db_q8[i] = next != horizon ? lit_db_q8 : LM_LEVEL_SHADOW;
         left |= kind_before & ~kind;
     }
     return left & LM_K_WATER;
+}
+
+/* Apart from the loop before, which waits every eight cells: vectors of 16 bits hold sixteen. */
+static void hold_levels(uint32_t end, const struct work *restrict w, int16_t *restrict level_db_q8)
+{
+    for (uint32_t i = 0; i < end; i++) {
+        level_db_q8[i] = fx_sat_i16(w->level_db_q8[i]);
+    }
 }
 
 /* Shores behind eight cells from `first` on, each of which has a byte of `eight`. */
@@ -159,7 +166,9 @@ void lm_k_light(const struct lm_k_lit_line *line)
     take_tops(line, end, w);
     set_ends(line, w);
     max_of_four(end, w);
-    if (light(end, w, line->horizon, line->level_db_q8)) {
+    const bool has_shore = light(end, w, line->horizon);
+    hold_levels(end, w, line->level_db_q8);
+    if (has_shore) {
         add_shores(line, w);
     }
     const uint32_t last = LM_LANES + cells - 1;

@@ -173,8 +173,8 @@ struct lm_k_layover {
  *   are 70 dB below the least power that counts.
  * - Each sum's worst error is 0.018 dB.
  *
- * Cost: 7 a cell where nothing moves, 11 over hills and in towns. A group is a pass for each two
- * cells that its places are apart. */
+ * Cost: up to 7 a cell where nothing moves, 9 to 10 over hills and in towns. A group is a pass for
+ * each two cells that its places are apart. */
 void lm_k_layover(const struct lm_k_layover *line, int16_t *laid_db_q8);
 
 /* Noise: draws of random numbers in decibels, as lm/noise.h makes them. Draws come in
