@@ -181,7 +181,7 @@ static void search_groups(struct search *of)
         for (uint32_t n = 0; n < room; n++) {
             most = fx_max_i32(most, key[n]);
         }
-        if (most >> GROUPS_LOG2 < of->least_db_q8) {
+        if (most < of->least_db_q8 * (1 << GROUPS_LOG2)) {
             return;
         }
         const uint32_t group = ~(uint32_t)most % (1u << GROUPS_LOG2);
