@@ -39,8 +39,7 @@ static inline int16x8_t neon_over(const int16_t *level_db_q8, int16x8_t most)
     return vminq_s16(vqsubq_s16(vld4q_s16(level_db_q8).val[0], most), vdupq_n_s16(0));
 }
 
-/* Sixteen levels a turn, of 64: the last turn reads LM_K_STRIDE - 1 behind its last, and is left to
- * the tail where there are none. */
+/* Sixteen levels a turn, of 64 numbers: the LM_K_STRIDE - 1 behind the last level are read, too. */
 uint32_t lm_k_sum_powers(const int16_t *level_db_q8, int16_t most_db_q8, uint32_t count)
 {
     enum { TURN = 16 * LM_K_STRIDE };

@@ -1,17 +1,6 @@
 #include "../plain.h"
 #include "neon.h"
 
-static inline int16x8x2_t neon_load_16(const int16_t *from)
-{
-    return (int16x8x2_t){{vld1q_s16(from), vld1q_s16(from + 8)}};
-}
-
-static inline void neon_store_16(int16_t *to, int16x8x2_t x)
-{
-    vst1q_s16(to, x.val[0]);
-    vst1q_s16(to + 8, x.val[1]);
-}
-
 /* The sums of both, less `less_db_q8`, into `to_db_q8`, which may be either. Returns how many cells
  * these are: whole sixteens. */
 static inline uint32_t neon_sum(const int16_t *sum_db_q8, const int16_t *level_db_q8,
@@ -23,12 +12,12 @@ static inline uint32_t neon_sum(const int16_t *sum_db_q8, const int16_t *level_d
     const uint8x16x4_t highs = vld1q_u8_x4(fx_table_db_sum_lines[1]);
     const uint8x16x4_t falls = vld1q_u8_x4(fx_table_db_sum_lines[2]);
     for (size_t i = 0; i < whole; i += 16) {
-        int16x8x2_t sum = neon_db_q8_sum_16(lows, highs, falls, neon_load_16(sum_db_q8 + i),
-                                            neon_load_16(level_db_q8 + i));
+        int16x8x2_t sum = neon_db_q8_sum_16(lows, highs, falls, vld1q_s16_x2(sum_db_q8 + i),
+                                            vld1q_s16_x2(level_db_q8 + i));
         for (size_t n = 0; n < 2; n++) {
             sum.val[n] = vqsubq_s16(sum.val[n], less);
         }
-        neon_store_16(to_db_q8 + i, sum);
+        vst1q_s16_x2(to_db_q8 + i, sum);
     }
     return whole;
 }
@@ -53,7 +42,7 @@ void lm_k_levels_mean(const int16_t *sum_db_q8, int16_t less_db_q8, int16_t *lev
 void lm_k_highest(const int16_t *level_db_q8, int16_t *highest_db_q8, uint32_t cells)
 {
     for (size_t i = 0; i < cells; i += LM_K_HIGHEST_CELLS) {
-        const int16x8x2_t level = neon_load_16(level_db_q8 + i);
+        const int16x8x2_t level = vld1q_s16_x2(level_db_q8 + i);
         *highest_db_q8++ = vmaxvq_s16(vmaxq_s16(level.val[0], level.val[1]));
     }
 }
@@ -99,7 +88,7 @@ uint32_t lm_k_stand_out(const int16_t *level_db_q8, int16_t least_db_q8, int16_t
 void lm_k_side_lobes(const int16_t *side_db_q8, int16_t point_db_q8, int16_t *level_db_q8)
 {
     const int16x8_t point = vdupq_n_s16(point_db_q8), below = vdupq_n_s16(LM_K_LOBES_BELOW_DB_Q8);
-    const int16x8x2_t side = neon_load_16(side_db_q8), level = neon_load_16(level_db_q8);
+    const int16x8x2_t side = vld1q_s16_x2(side_db_q8), level = vld1q_s16_x2(level_db_q8);
     const int16x8x2_t lobe = {{vqaddq_s16(point, side.val[0]), vqaddq_s16(point, side.val[1])}};
     int16x8x2_t sum = neon_db_q8_sum_16(vld1q_u8_x4(fx_table_db_sum_lines[0]),
                                         vld1q_u8_x4(fx_table_db_sum_lines[1]),
@@ -108,5 +97,5 @@ void lm_k_side_lobes(const int16_t *side_db_q8, int16_t point_db_q8, int16_t *le
         const uint16x8_t counts = vcgtq_s16(lobe.val[n], vqsubq_s16(level.val[n], below));
         sum.val[n] = vbslq_s16(counts, sum.val[n], level.val[n]);
     }
-    neon_store_16(level_db_q8, sum);
+    vst1q_s16_x2(level_db_q8, sum);
 }

@@ -40,15 +40,6 @@ struct neon_place {
     uint8_t *behind_shore;
 };
 
-/* Lower and upper bytes of sixteen numbers. */
-static inline void neon_set_bytes(uint8x16_t bytes[2], const uint16_t *from)
-{
-    const uint8x16_t low = vreinterpretq_u8_u16(vld1q_u16(from));
-    const uint8x16_t high = vreinterpretq_u8_u16(vld1q_u16(from + 8));
-    bytes[0] = vuzp1q_u8(low, high);
-    bytes[1] = vuzp2q_u8(low, high);
-}
-
 static inline struct neon_class_lut neon_class_lut_of(const struct lm_k_lit_line *line)
 {
     struct neon_class_lut l;

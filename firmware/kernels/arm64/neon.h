@@ -31,6 +31,15 @@ static inline uint8x16_t neon_lower_bytes(uint16x8x2_t v)
     return vuzp1q_u8(vreinterpretq_u8_u16(v.val[0]), vreinterpretq_u8_u16(v.val[1]));
 }
 
+/* Lower and upper bytes of a table of 16 numbers, as the two below want them. */
+static inline void neon_set_bytes(uint8x16_t bytes[2], const uint16_t *from)
+{
+    const uint8x16_t low = vreinterpretq_u8_u16(vld1q_u16(from));
+    const uint8x16_t high = vreinterpretq_u8_u16(vld1q_u16(from + 8));
+    bytes[0] = vuzp1q_u8(low, high);
+    bytes[1] = vuzp2q_u8(low, high);
+}
+
 /* Eight entries of a table of 16 numbers, of which the lower and the upper bytes are given; the
  * indices stand in the lower half. */
 static inline uint16x8_t neon_words(uint8x16_t low, uint8x16_t high, uint8x16_t index)

@@ -79,11 +79,9 @@ static inline struct neon_map neon_map_of(const struct lm_k_blend *map)
 {
     const uint8x16_t number = {128, 129, 130, 131, 132, 133, 134, 135,
                                136, 137, 138, 139, 140, 141, 142, 143};
-    const uint8x16_t low = vreinterpretq_u8_u16(vld1q_u16(map->height_dm_of_code));
-    const uint8x16_t high = vreinterpretq_u8_u16(vld1q_u16(map->height_dm_of_code + 8));
     const uint8x16_t natural = neon_marks(map->natural, UINT8_MAX);
     const uint8x16_t crowned = neon_marks(map->crowned, UINT8_MAX);
-    return (struct neon_map){
+    struct neon_map look_up = {
         .posts = neon_source_of(map->points),
         .cells = neon_source_of(map->points - LM_TILE_POINTS - 1),
         .grown = (const uint8_t *)map->grown,
@@ -92,8 +90,9 @@ static inline struct neon_map neon_map_of(const struct lm_k_blend *map)
         .marks = vorrq_u8(neon_marks(map->crowned, CROWNED), neon_marks(map->flat, FLAT)),
         .most = vorrq_u8(vandq_u8(natural, number), vandq_u8(crowned, vdupq_n_u8(1))),
         .least = vbicq_u8(vornq_u8(number, natural), crowned),
-        .height_dm = {vuzp1q_u8(low, high), vuzp2q_u8(low, high)},
     };
+    neon_set_bytes(look_up.height_dm, map->height_dm_of_code);
+    return look_up;
 }
 
 /* ---- places and points ---- */

@@ -8,12 +8,6 @@ static inline int32_t signal_db_q8(uint32_t power_q24)
     return fx_db_q8_vec(power_q24) - LM_K_UNIT_Q24_DB_Q8;
 }
 
-/* Within 16 bits. */
-static inline int32_t held(int32_t db_q8)
-{
-    return fx_clamp_i32(db_q8, INT16_MIN, INT16_MAX);
-}
-
 void lm_k_detect(const struct lm_k_receiver *receiver, const uint32_t *restrict power_q24,
                  int16_t *restrict level_db_q8, uint32_t cells)
 {
@@ -22,10 +16,10 @@ void lm_k_detect(const struct lm_k_receiver *receiver, const uint32_t *restrict 
     int32_t draw_db_q8[LM_CELLS_ROOM];
     draw(r.row_db_q8, r.entry, draw_db_q8, cells);
     for (uint32_t i = 0; i < cells; i++) {
-        const int32_t noise = held(held(r.noise_db_q8[i] + rise) + draw_db_q8[i]);
-        const int32_t signal = held(signal_db_q8(power_q24[i]) + LM_K_DETECT_BIAS_DB_Q8);
-        const int32_t sum = held(fx_db_q8_sum_vec(signal, noise)) - LM_K_DETECT_BIAS_DB_Q8;
-        level_db_q8[i] = fx_sat_i16(held(sum) - held(r.fall_db_q8[i]));
+        const int32_t noise = fx_sat_i16(fx_sat_i16(r.noise_db_q8[i] + rise) + draw_db_q8[i]);
+        const int32_t signal = fx_sat_i16(signal_db_q8(power_q24[i]) + LM_K_DETECT_BIAS_DB_Q8);
+        const int32_t sum = fx_sat_i16(fx_db_q8_sum_vec(signal, noise)) - LM_K_DETECT_BIAS_DB_Q8;
+        level_db_q8[i] = fx_sat_i16(fx_sat_i16(sum) - fx_sat_i16(r.fall_db_q8[i]));
     }
 }
 

@@ -42,10 +42,10 @@ void lm_layover_set(struct lm_layover *l, const struct lm_classes *classes,
  * - Power that leaves the line is lost, and nothing enters at its ends.
  * - Cells that get no power have less than half of LM_LEVEL_SHADOW.
  *
- * `ground` has cells and elevations of the line, `level_db_q8` its levels, magnitude below 2^29;
- * what it holds in the last group of 16 cells, behind the last cell, is lost. Returns the line as
- * it is laid over, in `laid_db_q8`, which has LM_LAYOVER_ROOM entries. Pointers are borrowed for
- * the call. Cost: that of lm_k_layover. */
+ * `ground` has cells and elevations of the line, `level_db_q8` its levels; what it holds in the
+ * last group of 16 cells, behind the last cell, is lost. Returns the line as it is laid over, in
+ * `laid_db_q8`, which has LM_LAYOVER_ROOM entries. Pointers are borrowed for the call. Cost: that
+ * of lm_k_layover. */
 int16_t *lm_layover_run(const struct lm_layover *l, const struct lm_scan_line *ground,
                         int16_t *level_db_q8, int16_t *laid_db_q8);
 

@@ -50,8 +50,8 @@ void lm_sea_set_cells(struct lm_sea *s, const struct lm_range_grid *grid, uint32
 void lm_sea_look(struct lm_sea *s, fx_bam_t azimuth);
 
 /* Add the gain of water to the levels of a line's water, in place. `cell` is that of struct
- * lm_scan_line. Works on whole groups of 16 cells: arrays have room for them. Cost: 4 instructions
- * a cell with a wind; without, 4 for each cell below the critical angle or near to it. */
+ * lm_scan_line. Works on whole groups of 16 cells: arrays have room for them. Cost: 3 instructions
+ * a cell with a wind; without, 3 for each cell below the critical angle or near to it. */
 void lm_sea_run(const struct lm_sea *s, const uint32_t *cell, int16_t *level_db_q8);
 
 #endif

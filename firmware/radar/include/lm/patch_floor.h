@@ -26,8 +26,8 @@ void lm_patch_floor_clear(struct lm_patch_floor *f);
 
 /* Take line `number` of `cells` levels (1 or more) into the mean. Returns the level that the ground
  * leaves in each of its cells, in dB * 256; -128 dB if there is no ground. `level_db_q8` holds what
- * the line receives, before speckle, within 2^17 of 0. Pointers are borrowed for the call. Cost: 1
- * instruction a cell. */
+ * the line receives, before speckle. Pointers are borrowed for the call. Cost: 1 instruction a
+ * cell. */
 int32_t lm_patch_floor_run(struct lm_patch_floor *f, const struct lm_sar_table *sar,
                            uint32_t number, const int16_t *level_db_q8, uint32_t cells);
 
