@@ -1,5 +1,6 @@
 #include "build/manifest.h"
 
+#include "gis/gdal_start.h"
 #include "hs/error.h"
 #include "image/sha256.h"
 
@@ -63,10 +64,7 @@ int build_manifest_dataset(FILE *out, const char *role, GDALDatasetH dataset)
     char **files = GDALGetFileList(dataset);
     int result = 0;
     for (int i = 0; files && files[i] && result == 0; i++) {
-        VSIStatBufL status;
-        /* Statistics that GDAL has left beside a file have no part in the image. */
-        const bool is_note = EQUAL(CPLGetExtension(files[i]), "xml");
-        if (!is_note && VSIStatL(files[i], &status) == 0 && !VSI_ISDIR(status.st_mode)) {
+        if (db_gdal_is_data(files[i])) {
             result = build_manifest_file(out, role, files[i]);
         }
     }

@@ -104,6 +104,17 @@ static int finish(struct db_raster_out *out, const float complex *pixels, int wi
     return db_raster_commit(out);
 }
 
+/* A raster of complex numbers that has no dataset yet; nor names, if memory is short. */
+static struct db_raster_out begin(const char *path, int width)
+{
+    db_gdal_start();
+    struct db_raster_out out = {.width = width, .type = GDT_CFloat32};
+    out.path = strdup(path);
+    out.temporary = hs_atomic_temporary_name(path);
+    CPLErrorReset();
+    return out;
+}
+
 int db_complex_write(const char *path, const float complex *pixels, int width, int height,
                      const struct db_complex_note *notes, int count,
                      const struct db_complex_place *place)
@@ -115,11 +126,7 @@ int db_complex_write(const char *path, const float complex *pixels, int width, i
     if (is_nitf && place) {
         return hs_error(path, "call it FILE.tif", "a NITF without geometry has no place on earth");
     }
-    db_gdal_start();
-    struct db_raster_out out = {.width = width, .type = GDT_CFloat32};
-    out.path = strdup(path);
-    out.temporary = hs_atomic_temporary_name(path);
-    CPLErrorReset();
+    struct db_raster_out out = begin(path, width);
     if (out.path && out.temporary) {
         out.dataset =
             (is_nitf ? create_nitf : create_tiff)(out.temporary, width, height, notes, count);
@@ -264,11 +271,7 @@ static GDALDatasetH open_sicd(const char *name, int width, int height, const str
 int db_sicd_write(const char *path, const float complex *pixels, int width, int height,
                   const struct db_sicd *sicd)
 {
-    db_gdal_start();
-    struct db_raster_out out = {.width = width, .type = GDT_CFloat32};
-    out.path = strdup(path);
-    out.temporary = hs_atomic_temporary_name(path);
-    CPLErrorReset();
+    struct db_raster_out out = begin(path, width);
     if (out.path && out.temporary) {
         out.dataset = open_sicd(out.temporary, width, height, sicd);
     }

@@ -2,8 +2,10 @@
 
 #include "hs/input_file.h"
 
+#include <cpl_conv.h>
 #include <cpl_error.h>
 #include <cpl_string.h>
+#include <cpl_vsi.h>
 #include <limits.h>
 #include <stdio.h>
 #include <string.h>
@@ -47,6 +49,13 @@ GDALDatasetH db_gdal_note(GDALDatasetH dataset)
     }
     CSLDestroy(files);
     return dataset;
+}
+
+bool db_gdal_is_data(const char *path)
+{
+    VSIStatBufL status;
+    return !EQUAL(CPLGetExtension(path), "xml") && VSIStatL(path, &status) == 0 &&
+           !VSI_ISDIR(status.st_mode);
 }
 
 const char *db_gdal_complaint(void)

@@ -6,7 +6,6 @@
 
 #include <cpl_conv.h>
 #include <cpl_string.h>
-#include <cpl_vsi.h>
 #include <math.h>
 #include <ogr_srs_api.h>
 #include <stdio.h>
@@ -145,9 +144,7 @@ static int add_dataset(struct source_list *list, GDALDatasetH dataset, const str
     char **files = GDALGetFileList(dataset);
     int result = 0;
     for (int i = 0; files && files[i] && result == 0; i++) {
-        VSIStatBufL status;
-        const bool is_note = EQUAL(CPLGetExtension(files[i]), "xml");
-        if (!is_note && VSIStatL(files[i], &status) == 0 && !VSI_ISDIR(status.st_mode)) {
+        if (db_gdal_is_data(files[i])) {
             const bool is_part = is_virtual && i > 0;
             result = add_source(list, files[i],
                                 is_part ? rows_under(grid, files[i])

@@ -155,6 +155,22 @@ static inline void close_signature_world(struct signature_world *w)
     free(w->with.bytes);
 }
 
+/* Set-up and tear-down for a fixture of `bytes` that begins with such a world, over open country.
+ */
+static inline int set_up_signature_world(void **state, size_t bytes)
+{
+    const struct tiny_spec spec = tiny_spec_at(46, 11);
+    *state = calloc(1, bytes);
+    return *state ? open_signature_world(*state, &spec) : -1;
+}
+
+static inline int tear_down_signature_world(void **state)
+{
+    close_signature_world(*state);
+    free(*state);
+    return 0;
+}
+
 /* Steps until every chip is there or will not come; false when they do not end. */
 static inline bool serve_chips(struct signature_world *w)
 {

@@ -16,7 +16,7 @@ static const double degree = 3.14159265358979323846 / 180;
 static const double range_m = 20000, height_m = 6000; /* 16.7 degrees: the first depression */
 
 struct fixture {
-    struct signature_world world;
+    struct signature_world world; /* first: see tear_down_signature_world */
     struct lm_radar radar;
     struct lm_sar sar;
     struct lm_line line;
@@ -69,14 +69,6 @@ static int set_up(void **state)
     return 0;
 }
 
-static int tear_down(void **state)
-{
-    struct fixture *f = *state;
-    close_signature_world(&f->world);
-    free(f);
-    return 0;
-}
-
 /* Power that a target adds within `reach` cells of a place, and its middle. Both pictures have the
  * same speckle, which is the last thing to be put on them: so what the target adds, against the
  * soil's own power, is the ratio of the two. */
@@ -110,7 +102,8 @@ static double clutter_db(double width_m, double length_m, double at_m)
     return 10 * log10(width_m * length_m * ref_grazing(&view, at_m, at_m - length_m));
 }
 
-TEST_WITH(corners_are_where_they_stand_and_as_bright_from_every_side, set_up, tear_down)
+TEST_WITH(corners_are_where_they_stand_and_as_bright_from_every_side, set_up,
+          tear_down_signature_world)
 {
     struct fixture *f = *state;
     const double cell_m = CELL_MM / 1000.0, centre = (SIDE - 1) / 2.0;
@@ -140,7 +133,7 @@ TEST_WITH(corners_are_where_they_stand_and_as_bright_from_every_side, set_up, te
     assert_true(worst_level < 0.1);
 }
 
-TEST_WITH(its_shadow_lies_behind_it_and_nowhere_else, set_up, tear_down)
+TEST_WITH(its_shadow_lies_behind_it_and_nowhere_else, set_up, tear_down_signature_world)
 {
     struct fixture *f = *state;
     const struct lm_target_set none = {0};
@@ -190,7 +183,7 @@ static size_t draw_all(struct fixture *f, const struct lm_target_set *set, doubl
 
 /* A chip is baked without the radar's response, so its strong points have the side lobes that
  * strong ground has: those that the reference gives the picture without any. */
-TEST_WITH(strong_points_of_a_chip_have_side_lobes, set_up, tear_down)
+TEST_WITH(strong_points_of_a_chip_have_side_lobes, set_up, tear_down_signature_world)
 {
     enum { MOST = LM_PATCH_LINES_MAX * SIDE };
     static double wanted_db[MOST], found_db[MOST], before_db[MOST], shadow_db[LM_PATCH_LINES_MAX];
@@ -214,7 +207,8 @@ TEST_WITH(strong_points_of_a_chip_have_side_lobes, set_up, tear_down)
     assert_true(raised > 20);
 }
 
-TEST_WITH(a_target_behind_the_horizon_shows_neither_itself_nor_its_shadow, set_up, tear_down)
+TEST_WITH(a_target_behind_the_horizon_shows_neither_itself_nor_its_shadow, set_up,
+          tear_down_signature_world)
 {
     struct fixture *f = *state;
     const struct lm_target_set none = {0};
@@ -229,7 +223,7 @@ TEST_WITH(a_target_behind_the_horizon_shows_neither_itself_nor_its_shadow, set_u
     }
 }
 
-TEST_WITH(a_mover_is_displaced_and_its_shadow_stays, set_up, tear_down)
+TEST_WITH(a_mover_is_displaced_and_its_shadow_stays, set_up, tear_down_signature_world)
 {
     struct fixture *f = *state;
     const struct lm_target_set none = {0};
@@ -247,7 +241,7 @@ TEST_WITH(a_mover_is_displaced_and_its_shadow_stays, set_up, tear_down)
 }
 
 TEST_WITH(a_line_with_too_much_of_chips_leaves_whole_ones_out_and_counts_their_cells, set_up,
-          tear_down)
+          tear_down_signature_world)
 {
     struct fixture *f = *state;
     struct lm_target crowd[LM_TARGET_CANDIDATES_MAX];
@@ -320,7 +314,7 @@ static struct lm_target target_beyond(double east_m, double south_m, double head
     return t;
 }
 
-TEST_WITH(the_lines_of_a_window_share_a_chip_without_loss, set_up, tear_down)
+TEST_WITH(the_lines_of_a_window_share_a_chip_without_loss, set_up, tear_down_signature_world)
 {
     struct fixture *f = *state;
     double worst_level = 0, worst_place_m = 0, worst_dark = 0;
@@ -370,7 +364,7 @@ TEST_WITH(the_lines_of_a_window_share_a_chip_without_loss, set_up, tear_down)
 
 /* Lines that pass by a target are told from its slack: of the largest pixels, a chip's corners are
  * 1.1 km from the target. */
-TEST_WITH(the_slack_of_a_target_holds_the_corners_of_its_chip, set_up, tear_down)
+TEST_WITH(the_slack_of_a_target_holds_the_corners_of_its_chip, set_up, tear_down_signature_world)
 {
     struct fixture *f = *state;
     const struct lm_target t = target_beyond(range_m, 0, 0);
@@ -385,7 +379,7 @@ TEST_WITH(the_slack_of_a_target_holds_the_corners_of_its_chip, set_up, tear_down
                 hypot(LM_CHIP_SIDE / 2, LM_CHIP_SIDE) * large.pixel_mm / 1000 * 256);
 }
 
-TEST_WITH(a_chip_joins_the_ground_and_a_point_the_scatterers, set_up, tear_down)
+TEST_WITH(a_chip_joins_the_ground_and_a_point_the_scatterers, set_up, tear_down_signature_world)
 {
     struct fixture *f = *state;
     const struct lm_target t = target_beyond(range_m, 0, 77);
@@ -453,7 +447,8 @@ static double boiling(struct fixture *f, struct lm_chips *chips)
 }
 
 /* The looks of DBS2 at this speed and angle: some six to eleven. */
-TEST_WITH(in_the_sweeps_of_a_window_a_chip_boils_and_a_point_stands, set_up, tear_down)
+TEST_WITH(in_the_sweeps_of_a_window_a_chip_boils_and_a_point_stands, set_up,
+          tear_down_signature_world)
 {
     struct fixture *f = *state;
     const double chip = boiling(f, &f->world.chips), point = boiling(f, NULL);
@@ -462,7 +457,8 @@ TEST_WITH(in_the_sweeps_of_a_window_a_chip_boils_and_a_point_stands, set_up, tea
     assert_true(point < 0.01);
 }
 
-TEST_WITH(without_its_chip_a_target_is_a_point_of_its_cross_section, set_up, tear_down)
+TEST_WITH(without_its_chip_a_target_is_a_point_of_its_cross_section, set_up,
+          tear_down_signature_world)
 {
     struct fixture *f = *state;
     const struct lm_target t = target_beyond(range_m, 0, 77);

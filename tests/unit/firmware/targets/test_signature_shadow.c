@@ -13,25 +13,13 @@ static const double range_m = 20000, height_m = 6000;
 static const struct lm_target_heights heights = {6000 * 1024, 0};
 
 struct fixture {
-    struct signature_world world;
+    struct signature_world world; /* first: see tear_down_signature_world */
     struct lm_target_patch points;
 };
 
 static int set_up(void **state)
 {
-    struct fixture *f = calloc(1, sizeof *f);
-    const struct tiny_spec spec = tiny_spec_at(46, 11);
-    assert_int_equal(open_signature_world(&f->world, &spec), 0);
-    *state = f;
-    return 0;
-}
-
-static int tear_down(void **state)
-{
-    struct fixture *f = *state;
-    close_signature_world(&f->world);
-    free(f);
-    return 0;
+    return set_up_signature_world(state, sizeof(struct fixture));
 }
 
 /* Where something stands, from the centre, which is half a cell from a cell's middle. */
@@ -100,7 +88,7 @@ static bool is_shaded(const struct spot *at, double end_m)
                ref_tangent(height_m, range_m + end_m, 0);
 }
 
-TEST_WITH(a_point_is_shaded_by_the_ray_over_it, set_up, tear_down)
+TEST_WITH(a_point_is_shaded_by_the_ray_over_it, set_up, tear_down_signature_world)
 {
     struct fixture *f = *state;
     int shaded = 0, seen = 0;
@@ -132,7 +120,8 @@ TEST_WITH(a_point_is_shaded_by_the_ray_over_it, set_up, tear_down)
 
 /* Its height is that of its top, 3 m: 10 m of shadow at 3 in 10. Near the hider it is shaded by a
  * higher ray only. One that is raised looks over. What shades is none of its own. */
-TEST_WITH(a_chip_in_the_shadow_of_another_is_not_drawn_and_throws_none, set_up, tear_down)
+TEST_WITH(a_chip_in_the_shadow_of_another_is_not_drawn_and_throws_none, set_up,
+          tear_down_signature_world)
 {
     struct fixture *f = *state;
     static const struct spot spots[] = {{0, 4, -2}, {0, 4, 2}, {0, -4, -2}, {8, 4, -2}};
@@ -163,7 +152,7 @@ TEST_WITH(a_chip_in_the_shadow_of_another_is_not_drawn_and_throws_none, set_up, 
 
 /* Three in a row: the second is shaded by the first, and shades the third none the less, whoever is
  * judged first. */
-TEST_WITH(the_order_of_the_targets_does_not_matter, set_up, tear_down)
+TEST_WITH(the_order_of_the_targets_does_not_matter, set_up, tear_down_signature_world)
 {
     struct fixture *f = *state;
     static const int orders[][3] = {{0, 1, 2}, {2, 1, 0}, {1, 2, 0}, {1, 0, 2}};
@@ -182,7 +171,7 @@ TEST_WITH(the_order_of_the_targets_does_not_matter, set_up, tear_down)
 }
 
 /* Marks of the terrain keep it, and a hider that terrain hides shades nothing. */
-TEST_WITH(terrain_and_shadows_go_together, set_up, tear_down)
+TEST_WITH(terrain_and_shadows_go_together, set_up, tear_down_signature_world)
 {
     struct fixture *f = *state;
     const struct spot here = {0, 0, 0}, at = {0, 5, 0};

@@ -15,26 +15,14 @@ static const double range_m = 20000, height_m = 6000, flies_m_s = 200, dwell_s =
 static const double middle = (LINES - 1) / 2.0, degree = 3.14159265358979323846 / 180;
 
 struct fixture {
-    struct signature_world world;
+    struct signature_world world; /* first: see tear_down_signature_world */
     struct lm_target_patch points;
     double found[LINES][CELLS], wanted[LINES][CELLS];
 };
 
 static int set_up(void **state)
 {
-    struct fixture *f = calloc(1, sizeof *f);
-    const struct tiny_spec spec = tiny_spec_at(46, 11);
-    assert_int_equal(open_signature_world(&f->world, &spec), 0);
-    *state = f;
-    return 0;
-}
-
-static int tear_down(void **state)
-{
-    struct fixture *f = *state;
-    close_signature_world(&f->world);
-    free(f);
-    return 0;
+    return set_up_signature_world(state, sizeof(struct fixture));
 }
 
 /* Metres a second to the right, as the radar looks, and nearer. */
@@ -132,7 +120,8 @@ static void focus(struct fixture *f, const struct motion *m)
     }
 }
 
-TEST_WITH(a_movers_chip_is_smeared_to_what_the_aperture_makes_of_its_corners, set_up, tear_down)
+TEST_WITH(a_movers_chip_is_smeared_to_what_the_aperture_makes_of_its_corners, set_up,
+          tear_down_signature_world)
 {
     struct fixture *f = *state;
     static const struct motion cases[] = {{0.05, 0}, {1.5, 0}, {6, 0},  {-9, 0},
