@@ -655,15 +655,28 @@ static void sample_lines(struct lm_sar *s, struct lm_tile_cache *tiles, uint32_t
     }
 }
 
+/* Add the side lobes of a line's strong cells to the lines around it, which are sampled. Beyond the
+ * patch these are places of the ring that hold no line. */
+static void add_side_lobes(struct lm_sar *s, uint32_t number)
+{
+    int16_t *around[LM_SIDE_LOBES_CELLS];
+    for (uint32_t k = 0; k < LM_SIDE_LOBES_CELLS; k++) {
+        around[k] = ring_line(s, number + k - LM_RESPONSE_REACH) + LM_SAR_GUARD;
+    }
+    lm_side_lobes_add(&s->side_lobes, number, around, s->radar->sar.cells);
+}
+
 /* Add side lobes of the ground, and the scatterers, to lines until `end` have them. It is done
  * after speckle and noise, which belong to the clutter: the echo of a target has its own
  * fluctuation. */
 static void add_scatterers(struct lm_sar *s, uint32_t end)
 {
     const int32_t least_db_q8 = s->radar->sar.noise_floor_db_q8 - LEFT_OUT_BELOW_FLOOR_Q8;
+    const uint32_t lobes_end = fx_min_u32(end + LM_RESPONSE_REACH, s->lines);
+    for (; s->lobes_added < lobes_end; s->lobes_added++) {
+        add_side_lobes(s, s->lobes_added);
+    }
     for (; s->summed < end; s->summed++) {
-        lm_side_lobes_add(&s->side_lobes, s->summed, ring_line(s, s->summed) + LM_SAR_GUARD,
-                          s->radar->sar.cells);
         lm_target_patch_add_scatterers(&s->target_patch, s->summed, least_db_q8, &s->geometry,
                                        ring_line(s, s->summed));
     }
@@ -724,7 +737,7 @@ const int16_t *lm_sar_draw_line(struct lm_sar *s, struct lm_tile_cache *tiles,
 
 void lm_sar_restart(struct lm_sar *s)
 {
-    s->line = s->sampled = s->summed = s->second_foreground = 0;
+    s->line = s->sampled = s->lobes_added = s->summed = s->second_foreground = 0;
     s->hidden_known = s->shaded_known = 0;
     s->has_target_patch = false;
     lm_side_lobes_clear(&s->side_lobes, &s->radar->sar.side_lobes);

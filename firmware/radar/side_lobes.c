@@ -11,17 +11,12 @@
 #include "lm/level.h"
 #include "lm/units.h"
 
-_Static_assert((int)LM_K_LOBES == 2 * LM_RESPONSE_REACH, "the kernel adds all but the last");
+_Static_assert((int)LM_K_LOBES_REACH == LM_RESPONSE_REACH, "the kernels add all");
 _Static_assert(2 * (int)LM_K_BESIDE == LM_RESPONSE_REACH, "the kernel looks as far");
 
 /* The main lobe reaches to 1.66 cells: cells beside a point's own are in it, and so is a part of
  * those behind them. Its power is in the cell's level already. */
-enum {
-    BESIDE = LM_RESPONSE_REACH / 2,
-    NEAREST = 2,
-    FIRST_NULL_CELLS_Q8 = 426,
-    NO_LOBE_DB_Q8 = INT16_MIN
-};
+enum { BESIDE = LM_RESPONSE_REACH / 2, FIRST_NULL_CELLS_Q8 = 426, NO_LOBE_DB_Q8 = INT16_MIN };
 
 /* Places lie evenly in the cell: odd sixteenths from its middle. */
 static int32_t off_cells_q8(int32_t place)
@@ -57,7 +52,6 @@ void lm_side_lobes_clear(struct lm_side_lobes *s, const struct lm_side_lobe_conf
 {
     const int32_t own_db_q8 = fx_db_q8(own_power_q30());
     s->config = config;
-    s->found = 0;
     for (uint32_t k = 0; k < LM_SIDE_LOBES_LINES; k++) {
         s->line[k].count = 0;
     }
@@ -194,7 +188,6 @@ void lm_side_lobes_find(struct lm_side_lobes *s, uint32_t line, const int16_t *l
                         uint32_t cells, int32_t shadow_db_q8, uint32_t seed)
 {
     s->line[line % LM_SIDE_LOBES_LINES].count = 0;
-    s->found = line + 1;
     if (s->config->a_line != 0) {
         struct search of = {.s = s,
                             .level_db_q8 = level_db_q8,
@@ -216,47 +209,29 @@ static inline void add(int16_t *level_db_q8, int32_t side_lobe)
     }
 }
 
-/* Side lobes of a point in its own line. A kernel adds all but the last, where the line has all. */
+/* Side lobes of a point in its own line. A kernel adds them where the line has all. */
 static inline void add_along(const struct lm_side_lobes *s, const struct lm_strong_cell *p,
                              int16_t *level_db_q8, int32_t cells)
 {
     const int16_t *const side = s->side_db_q8 + p->beyond + LM_RESPONSE_REACH;
-    int32_t first = p->cell - LM_RESPONSE_REACH;
-    const int32_t last = fx_min_i32(p->cell + LM_RESPONSE_REACH, cells - 1);
-    if (first >= 0 && last == p->cell + LM_RESPONSE_REACH) {
-        lm_k_side_lobes(side - LM_RESPONSE_REACH, p->level_db_q8, level_db_q8 + first);
-        first = last;
+    const int32_t first = p->cell - LM_RESPONSE_REACH, last = p->cell + LM_RESPONSE_REACH;
+    if (first >= 0 && last < cells) {
+        lm_k_side_lobes(side, p->level_db_q8, level_db_q8 + p->cell);
+        return;
     }
-    for (int32_t i = fx_max_i32(first, 0); i <= last; i++) {
+    for (int32_t i = fx_max_i32(first, 0); i <= fx_min_i32(last, cells - 1); i++) {
         add(&level_db_q8[i], p->level_db_q8 + side[i - p->cell]);
     }
 }
 
-/* Side lobes of the points of line `n` on another, `beside` lines on. */
-static inline void add_across(const struct lm_side_lobes *s, uint32_t n, int32_t beside,
-                              int16_t *level_db_q8)
-{
-    const uint32_t slot = n % LM_SIDE_LOBES_LINES;
-    const int16_t *const side = s->side_db_q8 + LM_RESPONSE_REACH + beside;
-    const struct lm_strong_cell *p = s->line[slot].strong;
-    for (const struct lm_strong_cell *const end = p + s->line[slot].count; p != end; p++) {
-        add(&level_db_q8[p->cell], p->level_db_q8 + side[p->right]);
-    }
-}
-
-void lm_side_lobes_add(const struct lm_side_lobes *s, uint32_t line, int16_t *level_db_q8,
-                       uint32_t cells)
+void lm_side_lobes_add(const struct lm_side_lobes *s, uint32_t line,
+                       int16_t *const around[LM_SIDE_LOBES_CELLS], uint32_t cells)
 {
     const uint32_t slot = line % LM_SIDE_LOBES_LINES;
-    const int32_t before = (int32_t)fx_min_u32(line, LM_RESPONSE_REACH);
-    const int32_t behind = (int32_t)fx_min_u32(s->found - 1 - line, LM_RESPONSE_REACH);
-    for (int32_t beside = before; beside >= NEAREST; beside--) {
-        add_across(s, line - (uint32_t)beside, beside, level_db_q8);
-    }
-    for (uint32_t k = 0; k < s->line[slot].count; k++) {
-        add_along(s, &s->line[slot].strong[k], level_db_q8, (int32_t)cells);
-    }
-    for (int32_t beside = NEAREST; beside <= behind; beside++) {
-        add_across(s, line + (uint32_t)beside, -beside, level_db_q8);
+    const struct lm_strong_cell *p = s->line[slot].strong;
+    for (const struct lm_strong_cell *const end = p + s->line[slot].count; p != end; p++) {
+        add_along(s, p, around[LM_RESPONSE_REACH], (int32_t)cells);
+        lm_k_side_lobes_across(s->side_db_q8 + p->right + LM_RESPONSE_REACH, p->level_db_q8, around,
+                               (uint32_t)p->cell);
     }
 }

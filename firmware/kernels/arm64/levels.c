@@ -85,11 +85,13 @@ uint32_t lm_k_stand_out(const int16_t *level_db_q8, int16_t least_db_q8, int16_t
     return vaddv_u8(vget_low_u8(mask)) | (uint32_t)vaddv_u8(vget_high_u8(mask)) << 8;
 }
 
-void lm_k_side_lobes(const int16_t *side_db_q8, int16_t point_db_q8, int16_t *level_db_q8)
+/* Levels with the side lobes of a point added that count: those before its own, and behind it. */
+static inline int16x8x2_t neon_with_lobes(const int16_t *side_db_q8, int16_t point_db_q8,
+                                          int16x8x2_t level)
 {
     const int16x8_t point = vdupq_n_s16(point_db_q8), below = vdupq_n_s16(LM_K_LOBES_BELOW_DB_Q8);
-    const int16x8x2_t side = vld1q_s16_x2(side_db_q8), level = vld1q_s16_x2(level_db_q8);
-    const int16x8x2_t lobe = {{vqaddq_s16(point, side.val[0]), vqaddq_s16(point, side.val[1])}};
+    const int16x8x2_t lobe = {{vqaddq_s16(point, vld1q_s16(side_db_q8 - LM_K_LOBES_REACH)),
+                               vqaddq_s16(point, vld1q_s16(side_db_q8 + 1))}};
     int16x8x2_t sum = neon_db_q8_sum_16(vld1q_u8_x4(fx_table_db_sum_lines[0]),
                                         vld1q_u8_x4(fx_table_db_sum_lines[1]),
                                         vld1q_u8_x4(fx_table_db_sum_lines[2]), level, lobe);
@@ -97,5 +99,50 @@ void lm_k_side_lobes(const int16_t *side_db_q8, int16_t point_db_q8, int16_t *le
         const uint16x8_t counts = vcgtq_s16(lobe.val[n], vqsubq_s16(level.val[n], below));
         sum.val[n] = vbslq_s16(counts, sum.val[n], level.val[n]);
     }
-    vst1q_s16_x2(level_db_q8, sum);
+    return sum;
+}
+
+void lm_k_side_lobes(const int16_t *side_db_q8, int16_t point_db_q8, int16_t *level_db_q8)
+{
+    _Static_assert(LM_K_LOBES_REACH == 8, "a vector each way");
+    int16_t *const before = level_db_q8 - LM_K_LOBES_REACH, *const behind = level_db_q8 + 1;
+    const int16x8x2_t level = {{vld1q_s16(before), vld1q_s16(behind)}};
+    const int16x8x2_t sum = neon_with_lobes(side_db_q8, point_db_q8, level);
+    vst1q_s16(before, sum.val[0]);
+    vst1q_s16(behind, sum.val[1]);
+}
+
+/* A cell of eight lines. */
+static inline int16x8_t neon_load_across(int16_t *const *line, uint32_t cell)
+{
+    int16x8_t v = vld1q_dup_s16(line[0] + cell);
+    v = vld1q_lane_s16(line[1] + cell, v, 1);
+    v = vld1q_lane_s16(line[2] + cell, v, 2);
+    v = vld1q_lane_s16(line[3] + cell, v, 3);
+    v = vld1q_lane_s16(line[4] + cell, v, 4);
+    v = vld1q_lane_s16(line[5] + cell, v, 5);
+    v = vld1q_lane_s16(line[6] + cell, v, 6);
+    return vld1q_lane_s16(line[7] + cell, v, 7);
+}
+
+static inline void neon_store_across(int16_t *const *line, uint32_t cell, int16x8_t v)
+{
+    vst1q_lane_s16(line[0] + cell, v, 0);
+    vst1q_lane_s16(line[1] + cell, v, 1);
+    vst1q_lane_s16(line[2] + cell, v, 2);
+    vst1q_lane_s16(line[3] + cell, v, 3);
+    vst1q_lane_s16(line[4] + cell, v, 4);
+    vst1q_lane_s16(line[5] + cell, v, 5);
+    vst1q_lane_s16(line[6] + cell, v, 6);
+    vst1q_lane_s16(line[7] + cell, v, 7);
+}
+
+void lm_k_side_lobes_across(const int16_t *side_db_q8, int16_t point_db_q8, int16_t *const *around,
+                            uint32_t cell)
+{
+    int16_t *const *const behind = around + LM_K_LOBES_REACH + 1;
+    const int16x8x2_t level = {{neon_load_across(around, cell), neon_load_across(behind, cell)}};
+    const int16x8x2_t sum = neon_with_lobes(side_db_q8, point_db_q8, level);
+    neon_store_across(around, cell, sum.val[0]);
+    neon_store_across(behind, cell, sum.val[1]);
 }

@@ -57,12 +57,30 @@ uint32_t lm_k_stand_out(const int16_t *level_db_q8, int16_t least_db_q8, int16_t
     return mask;
 }
 
+/* A level with a side lobe of a point added, if that counts. */
+static inline int16_t with_lobe(int16_t level_db_q8, int16_t point_db_q8, int16_t side_db_q8)
+{
+    const int16_t lobe = fx_sat_i16(point_db_q8 + side_db_q8);
+    const int16_t sum = fx_sat_i16(fx_db_q8_sum_vec(level_db_q8, lobe));
+    return lobe > fx_sat_i16(level_db_q8 - LM_K_LOBES_BELOW_DB_Q8) ? sum : level_db_q8;
+}
+
 void lm_k_side_lobes(const int16_t *restrict side_db_q8, int16_t point_db_q8,
                      int16_t *restrict level_db_q8)
 {
-    for (uint32_t i = 0; i < LM_K_LOBES; i++) {
-        const int16_t level = level_db_q8[i], lobe = fx_sat_i16(point_db_q8 + side_db_q8[i]);
-        const int16_t sum = fx_sat_i16(fx_db_q8_sum_vec(level, lobe));
-        level_db_q8[i] = lobe > fx_sat_i16(level - LM_K_LOBES_BELOW_DB_Q8) ? sum : level;
+    for (int32_t n = 1; n <= LM_K_LOBES_REACH; n++) {
+        level_db_q8[-n] = with_lobe(level_db_q8[-n], point_db_q8, side_db_q8[-n]);
+        level_db_q8[n] = with_lobe(level_db_q8[n], point_db_q8, side_db_q8[n]);
+    }
+}
+
+void lm_k_side_lobes_across(const int16_t *side_db_q8, int16_t point_db_q8, int16_t *const *around,
+                            uint32_t cell)
+{
+    for (int32_t n = -LM_K_LOBES_REACH; n <= LM_K_LOBES_REACH; n++) {
+        if (n != 0) {
+            int16_t *const at = around[n + LM_K_LOBES_REACH] + cell;
+            *at = with_lobe(*at, point_db_q8, side_db_q8[n]);
+        }
     }
 }

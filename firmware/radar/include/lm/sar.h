@@ -54,12 +54,21 @@ enum {
         48, /* cells that are traced before the guard cells, or behind the patch */
     LM_SAR_FOREGROUND_LINES = 16, /* lines from one traced foreground to the next */
 
-    /* Lines sampled ahead of the line that is drawn: a scatterer is spread over the lines before
-     * its own, and defocus smears those. */
-    LM_SAR_AHEAD = LM_RESPONSE_REACH + LM_DEFOCUS_REACH,
-    /* Lines kept: those ahead, and those behind that defocus needs. */
-    LM_SAR_RING = LM_SAR_AHEAD + LM_DEFOCUS_REACH + 1
+    /* Lines sampled ahead of the line that is drawn. Defocus smears the lines before their own, a
+     * strong cell has side lobes on those, and it gives them once all around it are sampled. */
+    LM_SAR_AHEAD = 2 * LM_RESPONSE_REACH + LM_DEFOCUS_REACH,
+    /* Lines kept: those ahead, and those behind that defocus needs; and more, because a power of
+     * two makes a place in the ring cheap. */
+    LM_SAR_RING = 32
 };
+
+/* Side lobes of lines near the patch's ends reach beyond it. These places must be free: at most
+ * LM_SAR_AHEAD lines ahead are sampled, and LM_DEFOCUS_REACH behind are needed. */
+_Static_assert((int)LM_SAR_RING > LM_SAR_AHEAD + (int)LM_RESPONSE_REACH,
+               "no place before line 0 is in use");
+_Static_assert(LM_SAR_RING > 2 * ((int)LM_DEFOCUS_REACH + (int)LM_RESPONSE_REACH),
+               "no place behind the last line is in use");
+_Static_assert((int)LM_SIDE_LOBES_LINES > (int)LM_SAR_AHEAD, "strong cells of all lines ahead");
 
 /* Shortest time between two lines. A patch whose dwell is shorter than all its lines together takes
  * as long as the lines. */
@@ -143,7 +152,9 @@ struct lm_sar {
     lm_horizon_q40_t foregrounds[2]; /* horizon behind each of the two */
     lm_horizon_q40_t horizon;        /* horizon at the start of the line traced last */
     uint32_t line;                   /* next line to draw; `lines`: done */
-    uint32_t sampled, summed;        /* lines in the ring; lines that have the scatterers added */
+    uint32_t sampled;                /* lines in the ring */
+    uint32_t lobes_added;            /* lines whose strong cells have given their side lobes */
+    uint32_t summed;                 /* lines that have the scatterers added */
     bool has_target_patch;           /* true once the targets' scatterers were computed */
     uint32_t hidden_known;           /* scatterers tested for being hidden, before line 0 */
     uint32_t shaded_known;           /* and then, for the shadows of other targets */

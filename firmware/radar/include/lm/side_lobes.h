@@ -11,7 +11,8 @@
  *               .
  *
  * Order of the calls: _clear for a patch, _find for each line once it has its noise and speckle,
- * _add for each line that was found, once those LM_RESPONSE_REACH lines further on were. No call
+ * _add for each line in turn, once those LM_RESPONSE_REACH lines further on were searched. A line
+ * has all its side lobes when _add was called for that LM_RESPONSE_REACH lines further on. No call
  * fails. */
 #ifndef LM_SIDE_LOBES_H
 #define LM_SIDE_LOBES_H
@@ -23,12 +24,10 @@
 
 enum {
     LM_SIDE_LOBES_A_LINE = LM_RADAR_SIDE_LOBES_MAX,
-    LM_SIDE_LOBES_LINES = 32,  /* lines that are remembered */
+    LM_SIDE_LOBES_LINES = 32,  /* lines whose strong cells are remembered */
     LM_SIDE_LOBES_OFFSETS = 8, /* places of a point in its cell, each way */
     LM_SIDE_LOBES_CELLS = 2 * LM_RESPONSE_REACH + 1
 };
-
-_Static_assert(LM_SIDE_LOBES_LINES >= 3 * LM_RESPONSE_REACH, "those before and those ahead");
 
 /* Strong cell: its level with speckle, and where in the cell its point lies, each way: place 0..7
  * is an odd sixteenth, from 7/16 before the middle to 7/16 behind it. What is kept is where the
@@ -38,7 +37,7 @@ struct lm_strong_cell {
     uint16_t right, beyond;
 };
 
-/* Strong cells of the lines around the one that is drawn. The caller owns it; all fields are
+/* Strong cells of the lines sampled last. The caller owns it; all fields are
  * read-only to others. */
 struct lm_side_lobes {
     const struct lm_side_lobe_config *config; /* borrowed */
@@ -46,7 +45,6 @@ struct lm_side_lobes {
         uint32_t count;
         struct lm_strong_cell strong[LM_SIDE_LOBES_A_LINE]; /* the strongest first */
     } line[LM_SIDE_LOBES_LINES];                            /* line n at n % LM_SIDE_LOBES_LINES */
-    uint32_t found;                                         /* lines that were searched */
     /* Side lobes of a point over its response in its own cell, mean over the places there: for each
      * place, by the cells from its own, -LM_RESPONSE_REACH first. */
     int16_t side_db_q8[LM_SIDE_LOBES_OFFSETS * LM_SIDE_LOBES_CELLS];
@@ -63,10 +61,11 @@ void lm_side_lobes_clear(struct lm_side_lobes *s, const struct lm_side_lobe_conf
 void lm_side_lobes_find(struct lm_side_lobes *s, uint32_t line, const int16_t *level_db_q8,
                         uint32_t cells, int32_t shadow_db_q8, uint32_t seed);
 
-/* Add to the levels of line `line` the side lobes of its own strong cells and of those on lines up
- * to LM_RESPONSE_REACH before and behind it. Cost: 23 instructions for each cell across, of which
- * there are 28 at most, and 110 for the cells along of each strong one. */
-void lm_side_lobes_add(const struct lm_side_lobes *s, uint32_t line, int16_t *level_db_q8,
-                       uint32_t cells);
+/* Add the side lobes of the strong cells of line `line` to its levels and to those of the lines
+ * around it. around[LM_RESPONSE_REACH] are its own levels, around[0] those LM_RESPONSE_REACH lines
+ * before it; where the patch has no line, any that is not shown. Cost: some 150 instructions for
+ * each strong cell. */
+void lm_side_lobes_add(const struct lm_side_lobes *s, uint32_t line,
+                       int16_t *const around[LM_SIDE_LOBES_CELLS], uint32_t cells);
 
 #endif

@@ -38,6 +38,22 @@ static double taylor(double x)
 /* The main lobe ends there. */
 static const double first_null = 1.663;
 
+/* Once line k of a field of `lines` is searched, the line that has all around it gives its side
+ * lobes. */
+static void add_behind(int16_t level_q8[][LM_CELLS_ROOM], uint32_t lines, uint32_t k)
+{
+    static int16_t beyond_q8[LM_CELLS_ROOM];
+    int16_t *around[LM_SIDE_LOBES_CELLS];
+    if (k < LM_RESPONSE_REACH || k - LM_RESPONSE_REACH >= lines) {
+        return;
+    }
+    for (uint32_t n = 0; n < LM_SIDE_LOBES_CELLS; n++) {
+        const uint32_t line = k - 2 * LM_RESPONSE_REACH + n; /* wraps before line 0 */
+        around[n] = line < lines ? level_q8[line] : beyond_q8;
+    }
+    lm_side_lobes_add(&lobes, k - LM_RESPONSE_REACH, around, CELLS);
+}
+
 /* A wall of 37 dB in the dark, on the middle one of some lines. */
 static const struct lm_strong_cell *draw_wall(uint32_t seed)
 {
@@ -49,9 +65,7 @@ static const struct lm_strong_cell *draw_wall(uint32_t seed)
         picture[k][WALL] = k == MIDDLE ? 37 * 256 : FLOOR_Q8;
         lm_side_lobes_find(&lobes, k, picture[k], CELLS, -46 * 256, seed);
         assert_int_equal(lobes.line[k % LM_SIDE_LOBES_LINES].count, k == MIDDLE);
-        if (k >= LM_RESPONSE_REACH) {
-            lm_side_lobes_add(&lobes, k - LM_RESPONSE_REACH, picture[k - LM_RESPONSE_REACH], CELLS);
-        }
+        add_behind(picture, LINES, k);
     }
     return &lobes.line[MIDDLE % LM_SIDE_LOBES_LINES].strong[0];
 }
@@ -169,14 +183,13 @@ TEST(side_lobes_of_a_field_of_points_are_the_references)
     const struct ref_side_lobes lobe_law = law();
     assert_int_equal(ref_side_lobes(&lobe_law, level_wanted, shadow_db, FIELD, CELLS, 77), 0);
     lm_side_lobes_clear(&lobes, &lm_radar_default.sar.side_lobes);
-    for (uint32_t k = 0; k < FIELD + LM_RESPONSE_REACH; k++) {
+    for (uint32_t k = 0; k < FIELD + 2 * LM_RESPONSE_REACH; k++) {
         if (k < FIELD) {
             lm_side_lobes_find(&lobes, k, level_q8[k], CELLS, -31 * 256, 77);
         }
-        if (k >= LM_RESPONSE_REACH) {
-            lm_side_lobes_add(&lobes, k - LM_RESPONSE_REACH, level_q8[k - LM_RESPONSE_REACH],
-                              CELLS);
-            compare(&score, k - LM_RESPONSE_REACH, level_q8[k - LM_RESPONSE_REACH]);
+        add_behind(level_q8, FIELD, k);
+        if (k >= 2 * LM_RESPONSE_REACH) { /* none that comes can reach it */
+            compare(&score, k - 2 * LM_RESPONSE_REACH, level_q8[k - 2 * LM_RESPONSE_REACH]);
         }
     }
     print_message("# %u cells, %u with a side lobe; worst %.2f dB, beyond 0.5 dB %u\n", score.cells,
