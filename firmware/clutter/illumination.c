@@ -117,29 +117,35 @@ void lm_class_lut_set(struct lm_class_lut *class_lut, const struct lm_illuminati
     class_lut->shore_db_q8 = config->shore_db_q8;
 }
 
-/* Horizon at the start of a line, in its grid's format.
+/* Tangent of a cell's top. */
+static int64_t tangent_of(const struct lm_k_tops *tops, uint32_t i)
+{
+    const uint32_t code = tops->cell[i] % LM_CLASS_LUT_CODES;
+    return lm_k_tangent(tops, i, lm_k_height_m_q14(tops->height_dm_of_code[code]));
+}
+
+/* Horizon at the start of a line, in its grid's format. From the antenna, the first cell shows what
+ * flat ground would. Behind a foreground it rises as the second does over it; the foreground's own
+ * last cell is too long to tell.
  *
  * Range: tangents are apparent heights times s_0 / s, in steps of 2^-14 m. Ground is -16..33 km
  * high, structures 6.6 km, the antenna is within 30 km, and the Earth drops by 9.4 km in 400 km.
  * Any two heights are less than 70 km = 2^30.1 steps apart, so that the rise between two cells fits
  * 32 bits. The start is limited to 2^30 below the first tangent, so that the first rise fits, too.
  */
-static int32_t start_tangent(const struct lm_range_grid *grid, int32_t first_tangent,
+static int32_t start_tangent(const struct lm_range_grid *grid, const struct lm_k_tops *tops,
                              lm_horizon_q40_t horizon)
 {
-    const int64_t start = horizon == LM_HORIZON_OPEN ? (int64_t)first_tangent - grid->flat_rise
-                                                     : horizon >> (40 - grid->tangent_bits);
-    const int64_t lowest = (int64_t)first_tangent - (1 << 30);
+    const int64_t first = tangent_of(tops, grid->first), lowest = first - (1 << 30);
+    int64_t start = first - grid->flat_rise;
+    if (horizon != LM_HORIZON_OPEN) {
+        const int64_t foreground = horizon >> (40 - grid->tangent_bits);
+        const int64_t rise =
+            grid->first + 1 < grid->cells ? tangent_of(tops, grid->first + 1) - first : 0;
+        start = rise > 0 ? first - rise : start;
+        start = foreground > start ? foreground : start;
+    }
     return fx_sat_i32(start < lowest ? lowest : start);
-}
-
-/* Tangent of the first displayed cell's top. */
-static int32_t first_tangent(const struct lm_range_grid *grid, const struct lm_class_lut *class_lut,
-                             const struct lm_scan_line *line)
-{
-    const struct lm_k_tops tops = tops_of(grid, class_lut, line);
-    const uint32_t code = line->cell[grid->first] % LM_CLASS_LUT_CODES;
-    return lm_k_tangent(&tops, grid->first, lm_k_height_m_q14(class_lut->height_dm[code]));
 }
 
 lm_horizon_q40_t lm_illuminate(const struct lm_range_grid *grid,
@@ -149,8 +155,9 @@ lm_horizon_q40_t lm_illuminate(const struct lm_range_grid *grid,
                                struct lm_lit_line *lit)
 {
     static const int16_t none_db_q8[LM_K_CODES] = {0};
+    const struct lm_k_tops tops = tops_of(grid, class_lut, line);
     const struct lm_k_lit_line kernel_line = {
-        .tops = tops_of(grid, class_lut, line),
+        .tops = tops,
         .gain_db_q8 = grid->gain_db_q8,
         .class_gain_db_q8 = class_gain ? class_gain->of_class_db_q8 : none_db_q8,
         .mark_of_class = class_lut->mark,
@@ -158,7 +165,7 @@ lm_horizon_q40_t lm_illuminate(const struct lm_range_grid *grid,
         .edge_trees_db_q3 = class_lut->edge_trees_db_q3,
         .shore_db_q8 = class_lut->shore_db_q8,
         .shore_fall_db_q8 = grid->shore_fall_db_q8,
-        .start = start_tangent(grid, first_tangent(grid, class_lut, line), horizon),
+        .start = start_tangent(grid, &tops, horizon),
         .horizon = lit->horizon,
         .level_db_q8 = lit->level_db_q8,
         .work = lit->scratch,

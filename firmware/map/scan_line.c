@@ -38,6 +38,7 @@ struct map_axis {
 struct walk {
     const struct lm_ground_path *path; /* borrowed */
     const struct lm_k_blend *blend;    /* borrowed; NULL: the nearest cells are read */
+    bool tells_runs;
     struct map_axis north, east;
     uint32_t cells;
     uint32_t side_log2; /* of a tile, in BAM of latitude */
@@ -66,6 +67,7 @@ void lm_scan_blend_set(struct lm_scan_blend *b, const struct lm_db *db, uint32_t
     const bool has_crowns = cell_mm < CROWN_CELL_MM && map_mm > CROWN_CELL_MM;
     b->is_on = (uint64_t)3 * cell_mm < (uint64_t)2 * map_mm;
     b->natural = b->crowned = b->flat = 0;
+    b->tells_runs = false;
     for (uint32_t i = 0; i < LM_DB_CLASSES; i++) {
         const struct lm_class *c = &db->classes.entry[i];
         b->natural |= (uint32_t)(c->flags & LM_CLASS_NATURAL) << i;
@@ -292,6 +294,22 @@ static void read_assigned(const struct walk *w, const struct lm_tile *pool, uint
     }
 }
 
+/* Tell the current run, as far as it goes. A tile has no hollows, and what a line comes back to is
+ * another run. */
+static inline void tell_run(const struct walk *w, struct lm_scan_line *line)
+{
+    const uint32_t row = w->north.tile, column = w->east.tile;
+    const uint32_t count = line->run_count;
+    const bool goes_on =
+        count != 0 && line->run[count - 1].row == row && line->run[count - 1].column == column;
+    if (!goes_on && count == LM_SCAN_RUNS_MAX) {
+        return;
+    }
+    struct lm_scan_run *const run = &line->run[goes_on ? count - 1 : count];
+    *run = (struct lm_scan_run){row, column, end_of_run(w)};
+    line->run_count = count + !goes_on;
+}
+
 /* Read the cells of a zone, from cell k on. Returns the first cell behind them. */
 static uint32_t read_zone(struct walk *w, struct lm_tile_cache *tiles, uint8_t lod, uint32_t k,
                           struct lm_scan_line *line)
@@ -310,6 +328,9 @@ static uint32_t read_zone(struct walk *w, struct lm_tile_cache *tiles, uint8_t l
             read_substitute(w, tiles, lod, k, end, line);
             assigned = end;
         }
+        if (w->tells_runs) {
+            tell_run(w, line);
+        }
         k = end;
     } while (next_run(w, k));
     read_assigned(w, pool, assigned, k, line);
@@ -324,7 +345,9 @@ void lm_scan_line_run(struct lm_scan_line *line, struct lm_tile_cache *tiles, ui
     struct lm_k_blend map;
     line->coarsest_lod = lod;
     line->coarse_cells = 0;
+    line->run_count = 0;
     start_walk(&w, tiles->db, lod, path, cells);
+    w.tells_runs = blend && blend->tells_runs;
     if (blend && blend->is_on) {
         map = (struct lm_k_blend){.points = lm_tile_origin(tiles->pool),
                                   .grown = lm_grown,

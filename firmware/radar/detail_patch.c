@@ -16,7 +16,6 @@ void lm_detail_patch_clear(struct lm_detail_patch *p, const struct lm_db *db)
 {
     p->tile_count = p->shape_count = 0;
     p->structures = 0;
-    p->side_log2 = (uint8_t)(db->shift0 + db->finest + LM_TILE_CELLS_LOG2);
     for (uint32_t n = 0; n < LM_DB_CLASSES; n++) {
         const bool is_structure = db->classes.entry[n].kind == LM_KIND_STRUCTURE;
         p->structures |= (uint16_t)(is_structure << n);
@@ -185,8 +184,7 @@ static struct lm_detail_shape shape_of(const struct lm_detail_item *item, const 
     const fx_bam_t ray = g->look + fx_atan2(place->right_m_q8, (int32_t)range_m_q8);
     struct lm_detail_shape shape = {
         .line_q8 = middle_q8 + (int32_t)lm_cells_q8_of_m_q8(aside_m_q8, g->cell_m_q8),
-        .cell_q8 = (int32_t)(g->cells - g->guard - 1) * 128 +
-                   (int32_t)((g->overscan + g->guard) * 256) +
+        .cell_q8 = (int32_t)(g->cells - 1) * 128 + (int32_t)(g->overscan * 256) +
                    (int32_t)lm_cells_q8_of_m_q8(place->beyond_m_q8, g->cell_m_q8),
         .class_number = item->class_number,
         .kind = item->kind,
@@ -407,106 +405,39 @@ static uint32_t draw_shape(const struct lm_detail_shape *shape, uint32_t line, u
     return (uint32_t)(end - first);
 }
 
-/* Row and column of a tile. */
-struct tile_place {
-    uint32_t row, column;
-};
-
-static inline bool are_same(struct tile_place a, struct tile_place b)
-{
-    return a.row == b.row && a.column == b.column;
-}
-
-/* Tile that holds cell k of a path. */
-static inline struct tile_place tile_place(const struct lm_detail_patch *p,
-                                           const struct lm_ground_path *path, uint32_t k)
-{
-    const uint64_t pairs = (uint64_t)k * (k - 1) / 2;
-    const fx_bam_t latitude =
-        (fx_bam_t)((path->latitude + k * path->latitude_step + pairs * path->latitude_bend) >> 32);
-    const fx_bam_t longitude =
-        (fx_bam_t)((path->longitude + k * path->longitude_step + pairs * path->longitude_bend) >>
-                   32);
-    return (struct tile_place){(latitude + FX_BAM_90) >> p->side_log2,
-                               longitude >> (p->side_log2 + lm_db_zone(latitude))};
-}
-
 /* Replace the structures among some cells of one tile by the ground under them, if the tile has
  * detail. */
-static void uncover_tile(const struct lm_detail_patch *p, struct tile_place place, uint32_t *cell,
-                         uint32_t cells)
+static void uncover_tile(const struct lm_detail_patch *p, const struct lm_scan_run *run,
+                         uint32_t *cell, uint32_t cells)
 {
     for (uint32_t i = 0; i < p->tile_count; i++) {
-        if (p->tile[i].row == place.row && p->tile[i].column == place.column) {
+        if (p->tile[i].row == run->row && p->tile[i].column == run->column) {
             lm_k_replace(p->structures, p->tile[i].under, cell, cells);
             return;
         }
     }
 }
 
-/* Cells from one on, along which a coordinate stays within its tile if it goes on as it does there,
- * straight. It is modulo 2^64; a tile is 2^side_log2 wide. */
-static inline uint64_t cells_to_border(uint64_t at, uint64_t step, uint32_t side_log2)
+/* Replace the structures of the map by the ground under them, where the tile has detail. */
+static void uncover(const struct lm_detail_patch *p, struct lm_scan_line *ground)
 {
-    const uint64_t round = ((uint64_t)1 << side_log2) - 1;
-    const bool grows = step >> 63 == 0;
-    const uint64_t room = (grows ? ~at : at) & round, way = grows ? step : 0 - step;
-    return way != 0 ? room / way : round;
-}
-
-/* First cell behind k that should lie in another tile: it does, but for what the line bends. At
- * most `cells`. */
-static inline uint32_t likely_end(const struct lm_detail_patch *p,
-                                  const struct lm_ground_path *path, uint32_t k, uint32_t cells)
-{
-    const uint64_t pairs = (uint64_t)k * (k - 1) / 2;
-    const uint64_t from_pole = path->latitude + ((uint64_t)FX_BAM_90 << 32) +
-                               k * path->latitude_step + pairs * path->latitude_bend;
-    const uint64_t longitude =
-        path->longitude + k * path->longitude_step + pairs * path->longitude_bend;
-    const uint32_t zone = lm_db_zone((fx_bam_t)(from_pole >> 32) - FX_BAM_90);
-    const uint64_t along = cells_to_border(from_pole, path->latitude_step + k * path->latitude_bend,
-                                           p->side_log2 + 32u);
-    const uint64_t across = cells_to_border(
-        longitude, path->longitude_step + k * path->longitude_bend, p->side_log2 + 32u + zone);
-    const uint64_t inside = along < across ? along : across;
-    return inside < cells - k - 1 ? k + 1 + (uint32_t)inside : cells;
-}
-
-/* Replace the structures of the map by the ground under them, where the tile has detail. A tile has
- * no hollows, and a line is all but straight: where it leaves a tile is guessed, and looked for
- * from there. */
-static void uncover(const struct lm_detail_patch *p, const struct lm_ground_path *path,
-                    uint32_t *cell, uint32_t cells)
-{
-    struct tile_place place = tile_place(p, path, 0);
-    for (uint32_t first = 0, end = 0; first < cells; first = end) {
-        end = likely_end(p, path, first, cells);
-        struct tile_place behind = tile_place(p, path, end), before = tile_place(p, path, end - 1);
-        while (end - 1 > first && !are_same(before, place)) {
-            end--;
-            behind = before;
-            before = tile_place(p, path, end - 1);
-        }
-        while (end < cells && are_same(behind, place)) {
-            end++;
-            behind = tile_place(p, path, end);
-        }
-        uncover_tile(p, place, cell + first, end - first);
-        place = behind;
+    uint32_t first = 0;
+    for (uint32_t n = 0; n < ground->run_count; n++) {
+        const struct lm_scan_run *run = &ground->run[n];
+        uncover_tile(p, run, ground->cell + first, run->end - first);
+        first = run->end;
     }
 }
 
 void lm_detail_patch_draw(const struct lm_detail_patch *p, uint32_t line,
-                          const struct lm_ground_path *path, struct lm_scan_line *ground,
-                          uint32_t cells)
+                          struct lm_scan_line *ground, uint32_t cells)
 {
     if (p->tile_count == 0) {
         return;
     }
     const uint32_t block = line / LM_DETAIL_BLOCK_LINES;
     uint32_t drawn = 0;
-    uncover(p, path, ground->cell, cells);
+    uncover(p, ground);
     const uint16_t *const end = p->entry + p->first[block + 1];
     for (const uint16_t *entry = p->entry + p->first[block]; entry < end; entry++) {
         const struct lm_detail_shape *shape = &p->shape[*entry];

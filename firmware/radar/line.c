@@ -10,7 +10,7 @@ lm_horizon_q40_t lm_line_trace(struct lm_line *line, struct lm_tile_cache *tiles
     const uint32_t cells = setup->grid->cells;
     lm_scan_line_run(&line->ground, tiles, setup->lod, setup->blend, path, cells);
     if (setup->detail) {
-        lm_detail_patch_draw(setup->detail, setup->number, path, &line->ground, cells);
+        lm_detail_patch_draw(setup->detail, setup->number, &line->ground, cells);
     }
     horizon = lm_illuminate(setup->grid, setup->class_lut, setup->class_gain, &line->ground,
                             horizon, &line->lit);

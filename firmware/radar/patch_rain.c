@@ -24,8 +24,7 @@ enum {
  * the line of sight to the centre. Rays to a patch are within 75 degrees of that. */
 static struct lm_shower_cells reach_of(const struct lm_patch_geometry *g, fx_bam_t aside)
 {
-    const uint32_t shown = g->cells - g->guard;
-    const uint32_t before_m_q8 = (shown - 1) * g->cell_m_q8 / 2 + g->guard * g->cell_m_q8;
+    const uint32_t before_m_q8 = (g->cells - 1) * g->cell_m_q8 / 2;
     const uint32_t cos_q30 = (uint32_t)fx_max_i32(fx_cos_q30(aside), 1 << 28);
     const uint64_t first_m_q8 = g->centre_m_q8 - before_m_q8;
     return (struct lm_shower_cells){(uint32_t)((first_m_q8 << 30) / cos_q30),

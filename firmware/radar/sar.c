@@ -9,9 +9,6 @@
 #include "lm/units.h"
 #include "lm/weather.h"
 
-_Static_assert((int)LM_SAR_GUARD == (int)LM_RADAR_PATCH_GUARD,
-               "the table leaves room for the guard cells");
-
 enum {
     LEFT_OUT_BELOW_FLOOR_Q8 = LM_DB_Q8(10),
     DWELL_MOST_MS = (1 << 17) - 1,
@@ -57,10 +54,10 @@ static enum lm_refusal judge_flight(const struct lm_radar *radar, const struct l
     return patch_us <= lm_us_of_ms(radar->sar.dwell_max_ms) ? LM_REFUSED_NOT : LM_REFUSED_DWELL;
 }
 
-/* Ground range where the guard cells begin; below 0 if that is behind the antenna. */
-static int64_t guard_m_q8(const struct lm_radar *radar, const struct lm_sar_command *c)
+/* Ground range where the patch begins; below 0 if that is behind the antenna. */
+static int64_t near_edge_m_q8(const struct lm_radar *radar, const struct lm_sar_command *c)
 {
-    const uint32_t before_centre = radar->sar.cells / 2u + LM_SAR_GUARD;
+    const uint32_t before_centre = radar->sar.cells / 2u;
     return (int64_t)lm_m_q8_of_m(c->range_m) -
            (int64_t)before_centre * lm_m_q8_of_mm_nearest(c->cell_mm);
 }
@@ -91,7 +88,7 @@ static enum lm_refusal judge_command(const struct lm_radar *radar, const struct 
     if (c->range_m > 250000) {
         return LM_REFUSED_FAR;
     }
-    if (c->range_m < 1000 || guard_m_q8(radar, c) < LM_M_Q8(16 * LM_RANGE_MIN_M) ||
+    if (c->range_m < 1000 || near_edge_m_q8(radar, c) < LM_M_Q8(16 * LM_RANGE_MIN_M) ||
         lines_needed(radar, c) > LM_PATCH_LINES_MAX) {
         return LM_REFUSED_NEAR;
     }
@@ -186,21 +183,20 @@ static uint32_t overscan_cells(const struct lm_sar *s, uint32_t height_m_q10, ui
 /* Set how many cells are traced on both sides of the patch, because layover brings them in. */
 static void set_overscan(struct lm_sar *s, const struct lm_sar_relief *relief)
 {
-    const uint32_t room = (uint32_t)(LM_CELLS_MAX - LM_SAR_GUARD - s->radar->sar.cells) / 2;
+    const uint32_t room = (uint32_t)(LM_CELLS_MAX - s->radar->sar.cells) / 2;
     const uint32_t most = fx_min_u32(LM_SAR_OVERSCAN_MAX, room);
-    const int64_t near_m_q8 = guard_m_q8(s->radar, &s->command) - LM_M_Q8(16 * LM_RANGE_MIN_M);
+    const int64_t near_m_q8 = near_edge_m_q8(s->radar, &s->command) - LM_M_Q8(16 * LM_RANGE_MIN_M);
     const uint64_t behind_us = (uint64_t)near_m_q8 / lm_m_q8_of_mm_nearest(s->command.cell_mm);
     s->lean_q16 = lean_q16(&s->command, relief->reference_m_q10);
     const uint32_t before = overscan_cells(s, relief->near_fall_m_q10, most);
     s->overscan = before < behind_us ? before : (uint32_t)behind_us;
-    s->traced = s->overscan + LM_SAR_GUARD + s->radar->sar.cells +
-                overscan_cells(s, relief->far_rise_m_q10, most);
+    s->traced = s->overscan + s->radar->sar.cells + overscan_cells(s, relief->far_rise_m_q10, most);
 }
 
 /* Ground range where the first traced cell begins. */
 static uint32_t traced_from_m_q8(const struct lm_sar *s)
 {
-    return (uint32_t)guard_m_q8(s->radar, &s->command) -
+    return (uint32_t)near_edge_m_q8(s->radar, &s->command) -
            s->overscan * lm_m_q8_of_mm_nearest(s->command.cell_mm);
 }
 
@@ -208,8 +204,7 @@ static void set_grid(struct lm_sar *s, const struct lm_db *db, int32_t reference
 {
     const struct lm_sar_command *c = &s->command;
     const uint32_t cell_m_q8 = lm_m_q8_of_mm_nearest(c->cell_mm), near_m_q8 = traced_from_m_q8(s);
-    const int32_t before =
-        (int32_t)(s->radar->sar.cells * cell_m_q8 / 2 + (LM_SAR_GUARD + s->overscan) * cell_m_q8);
+    const int32_t before = (int32_t)(s->radar->sar.cells * cell_m_q8 / 2 + s->overscan * cell_m_q8);
     const struct lm_ground_extent extent = {.near_m_q8 = -before,
                                             .far_m_q8 = (int32_t)(s->traced * cell_m_q8) - before,
                                             .side_m_q8 = (int32_t)(s->lines * cell_m_q8 / 2),
@@ -255,11 +250,10 @@ static void set_geometry(struct lm_sar *s)
         .centre_m_q8 = lm_m_q8_of_m(s->command.range_m),
         .cell_m_q8 = s->grid.cell_m_q8,
         .lines = s->lines,
-        .cells = s->radar->sar.cells + LM_SAR_GUARD,
-        .guard = LM_SAR_GUARD,
+        .cells = s->radar->sar.cells,
         .overscan = s->overscan,
         .traced = s->traced,
-        .first = fx_max_u32(s->grid.first, LM_SAR_GUARD + s->overscan) - s->overscan,
+        .first = fx_max_u32(s->grid.first, s->overscan) - s->overscan,
         .heights = {s->grid.height_m_q10, s->grid.reference_m_q10},
         .wavelength_um = s->radar->wavelength_um,
         .across_mm_s = s->across_mm_s,
@@ -371,7 +365,7 @@ uint64_t lm_sar_time_to_go_us(const struct lm_sar *s)
     return (s->lines - s->line) * s->line_us;
 }
 
-/* Path of a line over the guard cells and the patch. */
+/* Path of a line over the traced cells. */
 static void set_path(struct lm_ground_path *path, const struct lm_sar *s, uint32_t line)
 {
     lm_ground_patch_path(path, &s->ground, line, s->lines, s->grid.cells);
@@ -541,6 +535,7 @@ static void trace_line(struct lm_sar *s, struct lm_tile_cache *tiles, uint32_t n
     struct lm_scan_blend blend = s->blend;
     /* Detail takes the map's structures away, and their codes' heights with them. */
     blend.flat = has_detail ? s->detail.structures : 0;
+    blend.tells_runs = has_detail;
     const struct lm_line_setup setup = {.grid = &s->grid,
                                         .class_lut = &s->class_lut,
                                         .class_gain = &s->class_gain,
@@ -567,10 +562,10 @@ static void add_floor_and_speckle(struct lm_sar *s, uint32_t number, int16_t *cl
         noise_db_q8 = LM_LEVEL_SHADOW; /* the rain's veil has it */
     }
     const int32_t leak_db_q8 =
-        lm_patch_floor_run(&s->floor, &s->radar->sar, number, clutter_db_q8 + LM_SAR_GUARD, cells);
+        lm_patch_floor_run(&s->floor, &s->radar->sar, number, clutter_db_q8, cells);
     s->shadow_db_q8 = fx_db_q8_sum_vec(s->floor_db_q8, leak_db_q8);
-    lm_grain_floor_run(&s->speckle, place, fx_db_q8_sum_vec(noise_db_q8, leak_db_q8),
-                       clutter_db_q8 + LM_SAR_GUARD, level_db_q8 + LM_SAR_GUARD, cells);
+    lm_grain_floor_run(&s->speckle, place, fx_db_q8_sum_vec(noise_db_q8, leak_db_q8), clutter_db_q8,
+                       level_db_q8, cells);
 }
 
 void lm_sar_sample_line(struct lm_sar *s, struct lm_tile_cache *tiles, uint32_t number,
@@ -597,7 +592,7 @@ static bool is_early(const struct lm_sar *s, const struct lm_patch_scatterer *p)
 }
 
 /* Mark the scatterers of a traced line that its horizon hides. They count cells from the first
- * guard cell. */
+ * cell of the patch. */
 static void mark_hidden(struct lm_sar *s, uint32_t number, const struct lm_line *line)
 {
     lm_target_patch_mark_hidden(&s->target_patch, number, line->lit.horizon + s->overscan,
@@ -649,8 +644,8 @@ static void sample_lines(struct lm_sar *s, struct lm_tile_cache *tiles, uint32_t
     for (; s->sampled < end; s->sampled++) {
         int16_t *const level_db_q8 = ring_line(s, s->sampled);
         lm_sar_sample_line(s, tiles, s->sampled, line, level_db_q8);
-        lm_side_lobes_find(&s->side_lobes, s->sampled, level_db_q8 + LM_SAR_GUARD,
-                           s->radar->sar.cells, s->shadow_db_q8, s->command.centre.longitude);
+        lm_side_lobes_find(&s->side_lobes, s->sampled, level_db_q8, s->radar->sar.cells,
+                           s->shadow_db_q8, s->command.centre.longitude);
         mark_hidden(s, s->sampled, line);
     }
 }
@@ -661,7 +656,7 @@ static void add_side_lobes(struct lm_sar *s, uint32_t number)
 {
     int16_t *around[LM_SIDE_LOBES_CELLS];
     for (uint32_t k = 0; k < LM_SIDE_LOBES_CELLS; k++) {
-        around[k] = ring_line(s, number + k - LM_RESPONSE_REACH) + LM_SAR_GUARD;
+        around[k] = ring_line(s, number + k - LM_RESPONSE_REACH);
     }
     lm_side_lobes_add(&s->side_lobes, number, around, s->radar->sar.cells);
 }
@@ -694,11 +689,10 @@ static const int16_t *focus_line(struct lm_sar *s, int16_t *smeared_db_q8)
     for (int32_t m = -LM_DEFOCUS_REACH; m <= LM_DEFOCUS_REACH; m++) {
         const int32_t last = (int32_t)s->lines - 1;
         const int32_t number = fx_clamp_i32((int32_t)s->line + m, 0, last);
-        near_lines[m + LM_DEFOCUS_REACH] = ring_line(s, (uint32_t)number) + LM_SAR_GUARD;
+        near_lines[m + LM_DEFOCUS_REACH] = ring_line(s, (uint32_t)number);
     }
     lm_defocus_shares(s->defocus_lines_q8, share_q16);
-    lm_defocus_run(near_lines, share_q16, smeared_db_q8 + LM_SAR_GUARD, s->power_q32,
-                   s->radar->sar.cells);
+    lm_defocus_run(near_lines, share_q16, smeared_db_q8, s->power_q32, s->radar->sar.cells);
     return smeared_db_q8;
 }
 
@@ -730,7 +724,7 @@ const int16_t *lm_sar_draw_line(struct lm_sar *s, struct lm_tile_cache *tiles,
     lm_sar_sample_ahead(s, tiles, LM_PATCH_SCATTERERS_MAX, line);
     add_scatterers(s, fx_min_u32(s->line + 1 + LM_DEFOCUS_REACH, s->lines));
     const int16_t *const level_db_q8 = focus_line(s, line->lit.level_db_q8);
-    lm_tone_run(tone, level_db_q8 + LM_SAR_GUARD, line->grey + LM_SAR_GUARD, s->radar->sar.cells);
+    lm_tone_run(tone, level_db_q8, line->grey, s->radar->sar.cells);
     s->line++;
     return level_db_q8;
 }

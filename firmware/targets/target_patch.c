@@ -126,11 +126,9 @@ static struct lm_patch_scatterer scatterer_of(const struct lm_patch_geometry *g,
         g, position->across_m_q8 + ((right_m_q8 * cos_q30 + out_m_q8 * sin_q30) >> 30), range_m_q8);
     const int32_t top_m_q10 =
         lm_m_q10_of_m_q6(candidate->elevation_m_q6) + lm_m_q10_of_mm(r->up_mm);
-    /* Coordinates count from the middle of the first line and of the first guard cell. */
-    const int64_t shown = g->cells - g->guard;
+    /* Coordinates count from the middle of the first line and of its first cell. */
     const int64_t left_m_q8 = (int64_t)(g->lines - 1) * g->cell_m_q8 / 2;
-    const int64_t near_m_q8 =
-        g->centre_m_q8 - ((shown - 1) * g->cell_m_q8 / 2 + g->guard * g->cell_m_q8);
+    const int64_t near_m_q8 = g->centre_m_q8 - ((int64_t)g->cells - 1) * g->cell_m_q8 / 2;
     const int64_t nearer_m_q8 =
         (int64_t)(top_m_q10 - g->heights.reference_m_q10) * g->lean_q16 >> 18;
     const uint32_t held_m_q8 = (uint32_t)fx_max_i32(range_m_q8, 1);

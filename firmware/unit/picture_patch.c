@@ -209,7 +209,7 @@ static uint32_t draw_line(struct lm_picture *p, uint64_t now_us)
 
 static void paint(struct lm_picture *p, uint32_t number)
 {
-    lm_scan_conv_patch(&p->painter, &p->plane, number, p->line.grey + LM_SAR_GUARD);
+    lm_scan_conv_patch(&p->painter, &p->plane, number, p->line.grey);
 }
 
 static uint64_t line_us(const struct lm_picture *p)

@@ -72,7 +72,7 @@ struct ref_place ref_patch_offset(struct ref_place centre, double azimuth_deg, d
 struct ref_surface ref_sar_surface(const struct ref_sar *sar, struct ref_overscan overscan)
 {
     const double half_m = sar->cell_count * sar->cell_m / 2;
-    const double near_m = -half_m - (REF_GUARD_CELLS + overscan.before) * sar->cell_m;
+    const double near_m = -half_m - overscan.before * sar->cell_m;
     const double far_m = half_m + overscan.behind * sar->cell_m;
     struct ref_surface s = {
         .near_m = near_m, .far_m = far_m, .side_m = ref_sar_lines(sar) * sar->cell_m / 2};

@@ -40,6 +40,19 @@ double ref_gm_horizon(const struct ref_bin *first, const struct ref_view *view)
            ref_grazing(view, first->range_m, first->range_m) * view->cell_m / first->range_m;
 }
 
+double ref_behind_foreground(const struct ref_bin *bins, size_t count, const struct ref_view *view,
+                             double horizon)
+{
+    const size_t first = ref_first_shown(bins, count, view);
+    if (first >= count) {
+        return horizon;
+    }
+    const double tangent = bin_tangent(&bins[first], view->antenna_m);
+    const double rise =
+        first + 1 < count ? bin_tangent(&bins[first + 1], view->antenna_m) - tangent : 0;
+    return fmax(horizon, rise > 0 ? tangent - rise : ref_gm_horizon(&bins[first], view));
+}
+
 double ref_highest_tangent(const struct ref_bin *bins, size_t count, double antenna_m)
 {
     double highest = -INFINITY;

@@ -71,7 +71,7 @@ double ref_gm_azimuth_deg(const struct ref_gm *gm, unsigned line)
 /* The bins of a line. */
 static struct ref_patch_line line_of(const struct ref_picture *picture)
 {
-    const size_t first = (size_t)picture->overscan.before + picture->guard_count;
+    const size_t first = picture->overscan.before;
     const size_t shown = picture->cell_count;
     return (struct ref_patch_line){first + shown + picture->overscan.behind, first, shown};
 }
@@ -148,7 +148,7 @@ static double sar_along_m(const struct ref_sar *sar, int cell)
 double ref_sar_horizon(const struct ref_db *db, const struct ref_sar *sar,
                        const struct ref_params *params, unsigned before, unsigned line)
 {
-    const int first = -REF_GUARD_CELLS - (int)before;
+    const int first = -(int)before;
     const double tangent = sar_across_m(sar, line) / sar->range_m;
     const double end_m = sar->range_m + sar_along_m(sar, first) - sar->cell_m / 2;
     const double start_m = end_m / 16, cell_m = (end_m - start_m) / REF_COARSE_CELLS;
@@ -172,7 +172,7 @@ double ref_sar_horizon(const struct ref_db *db, const struct ref_sar *sar,
 /* First cell that is traced, and the one behind the last. */
 static int first_cell(const struct ref_picture *picture)
 {
-    return -(int)(picture->guard_count + picture->overscan.before);
+    return -(int)picture->overscan.before;
 }
 
 static int end_cell(const struct ref_picture *picture)
@@ -192,8 +192,11 @@ static void sar_line(const struct ref_picture *picture, const struct ref_db *db,
         bin->place = ref_surface_at(surface, sar_across_m(sar, line), along_m);
         sample(db, sar->cell_m, params, bin);
     }
-    ref_illuminate(ref_picture_bin(picture, line, first), (size_t)(end - first), &picture->view,
-                   params, picture->start_horizons[line]);
+    struct ref_bin *const bins = ref_picture_bin(picture, line, first);
+    const size_t count = (size_t)(end - first);
+    ref_illuminate(
+        bins, count, &picture->view, params,
+        ref_behind_foreground(bins, count, &picture->view, picture->start_horizons[line]));
 }
 
 /* Speckle is drawn for the cells that are shown. */
@@ -333,7 +336,7 @@ struct ref_overscan ref_sar_overscan(const struct ref_db *db, const struct ref_s
             fall_m = fmax(fall_m, reference_m - map_elevation_m(db, level, near, params));
         }
     }
-    const double room_m = sar->range_m - half_m - REF_GUARD_CELLS * sar->cell_m - REF_TRACED_FROM_M;
+    const double room_m = sar->range_m - half_m - REF_TRACED_FROM_M;
     const double most = fmax(floor(room_m / sar->cell_m), 0);
     return (struct ref_overscan){(unsigned)fmin(overscan_cells(&lean, fall_m), most),
                                  overscan_cells(&lean, rise_m)};
@@ -345,7 +348,6 @@ static int begin_patch(struct ref_picture *picture, const struct ref_db *db,
 {
     *picture = (struct ref_picture){.line_count = ref_sar_lines(sar),
                                     .cell_count = sar->cell_count,
-                                    .guard_count = REF_GUARD_CELLS,
                                     .view = {sar->antenna_m, 0, sar->cell_m},
                                     .level = ref_db_level_for(db, sar->cell_m)};
     picture->view.reference_m = map_elevation_m(db, picture->level, sar->centre, params);
@@ -377,8 +379,7 @@ int ref_sar_patch(struct ref_picture *picture, const struct ref_db *db, const st
         return -1;
     }
     for (unsigned line = 0; line < picture->line_count; line++) {
-        ref_tone(ref_picture_bin(picture, line, -REF_GUARD_CELLS),
-                 REF_GUARD_CELLS + sar->cell_count, params);
+        ref_tone(ref_picture_bin(picture, line, 0), sar->cell_count, params);
     }
     return 0;
 }

@@ -151,7 +151,7 @@ static int draw_patches(struct world *w, const struct lm_target_set *targets, ui
         make_resident(w);
         while (sar.line < sar.lines) {
             lm_sar_draw_line(&sar, &w->tiles, &w->tone, &w->line);
-            lm_scan_conv_patch(&w->painter, &w->plane, sar.line - 1, w->line.grey + LM_SAR_GUARD);
+            lm_scan_conv_patch(&w->painter, &w->plane, sar.line - 1, w->line.grey);
         }
     }
     return 0;

@@ -106,7 +106,6 @@ static void draw_patch(struct world *w)
                                         .cell_m_q8 = w->cell_mm * 256 / 1000,
                                         .lines = LINES,
                                         .cells = CELLS,
-                                        .guard = 4,
                                         .heights = {3000 * 1024, 0},
                                         .wavelength_um = 31228,
                                         .across_mm_s = 200000,

@@ -110,7 +110,6 @@ static void draw_patch(const struct lm_target *t, uint32_t count, const struct l
                                         .cell_m_q8 = 128u << (look->track & 6),
                                         .lines = LINES,
                                         .cells = CELLS,
-                                        .guard = 4,
                                         .heights = {3000 * 1024, 100 * 1024},
                                         .wavelength_um = 31228,
                                         .across_mm_s = (int32_t)look->speed_mm_s,

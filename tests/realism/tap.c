@@ -103,9 +103,9 @@ static void keep_ground(const struct tap *t, uint32_t number)
 {
     const struct lm_scan_line *ground = &t->line.ground;
     for (uint32_t i = 0; i < CELLS; i++) {
-        const uint32_t cell = ground->cell[i + LM_SAR_GUARD + t->sar.overscan];
+        const uint32_t cell = ground->cell[i + t->sar.overscan];
         patch[CELL][number][i] = (int32_t)cell;
-        patch[ELEVATION][number][i] = ground->elevation_m_q14[i + LM_SAR_GUARD + t->sar.overscan];
+        patch[ELEVATION][number][i] = ground->elevation_m_q14[i + t->sar.overscan];
         patch[HEIGHT_DM][number][i] = t->map.db.classes.height_dm[cell & 15];
     }
 }
@@ -161,8 +161,8 @@ static void draw_patch_line(struct tap *t)
     }
     const int16_t *level_db_q8 = lm_sar_draw_line(&t->sar, &t->map.tiles, &t->tone, &t->line);
     for (uint32_t i = 0; i < CELLS; i++) {
-        patch[LEVEL][number][i] = level_db_q8[i + LM_SAR_GUARD];
-        patch[GREY][number][i] = t->line.grey[i + LM_SAR_GUARD];
+        patch[LEVEL][number][i] = level_db_q8[i];
+        patch[GREY][number][i] = t->line.grey[i];
     }
 }
 

@@ -151,8 +151,7 @@ static uint8_t *draw_shadows(struct world *w, const struct patch *p)
         read_tiles(w);
         lm_sar_sample_line(&w->sar, &w->tiles, line, &w->line, w->level_q8);
         for (int i = 0; i < CELLS; i++) {
-            shadows[line * CELLS + (uint32_t)i] =
-                w->line.lit.level_db_q8[LM_SAR_GUARD + i] == LM_LEVEL_SHADOW;
+            shadows[line * CELLS + (uint32_t)i] = w->line.lit.level_db_q8[i] == LM_LEVEL_SHADOW;
         }
     }
     return shadows;

@@ -65,7 +65,7 @@ int ref_dump(const struct ref_picture *picture, const char *path)
         fprintf(file.stream, "%s\n", ref_dump_columns);
     }
     for (unsigned line = 0; line < picture->line_count; line++) {
-        for (int cell = -(int)picture->guard_count; cell < (int)picture->cell_count; cell++) {
+        for (int cell = 0; cell < (int)picture->cell_count; cell++) {
             double row[COLUMNS];
             fill_row(row, line, cell, ref_picture_bin(picture, line, cell));
             write_row(file.stream, is_raw, row);

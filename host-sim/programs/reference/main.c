@@ -284,7 +284,7 @@ static int render_sar(const struct request *request, const struct ref_db *db)
     sar.rain.environment.rain_count =
         set_rain(request, ref_patch_offset(sar.centre, sar.azimuth_deg, 0, -sar.range_m),
                  &sar.rain.environment.rain[0], &sar.rain_centre[0]);
-    const double near_m = sar.range_m - (sar.cell_count / 2.0 + REF_GUARD_CELLS) * sar.cell_m;
+    const double near_m = sar.range_m - (sar.cell_count / 2.0) * sar.cell_m;
     if (near_m <= 0) {
         return hs_error("--range", "give a longer range or a smaller patch",
                         "the patch would begin behind the antenna, at %g m", near_m);

@@ -26,6 +26,16 @@
 /* A cell without data: class 15, reflectivity code 0, height code 0. */
 enum { LM_CELL_NONE = 0x00F0 };
 
+/* Tiles that a line may cross. Its cells are no longer than those of the LOD that is read, but for
+ * an eighth: LM_CELLS_MAX of them cross 10 rows and 20 columns, zones and turns included. */
+enum { LM_SCAN_RUNS_MAX = 64 };
+
+/* Cells of a line that lie in one tile of the LOD. */
+struct lm_scan_run {
+    uint32_t row, column;
+    uint32_t end; /* first cell behind them */
+};
+
 struct lm_scan_line {
     /* Lower half: as in struct lm_tile_point, or LM_CELL_NONE. Upper half: what to add to its
      * reflectivity, 1/256 dB, signed; 0 unless blended. */
@@ -33,6 +43,8 @@ struct lm_scan_line {
     int32_t elevation_m_q14[LM_CELLS_ROOM]; /* above mean sea level; 0 where there is no data */
     uint8_t coarsest_lod;                   /* of the tiles that answered with data */
     uint16_t coarse_cells;                  /* cells in runs that an ancestor answered with data */
+    uint32_t run_count;
+    struct lm_scan_run run[LM_SCAN_RUNS_MAX]; /* in their order; told if the caller asks for them */
 };
 
 /* LOD for a line whose cells are cell_mm long: the LOD whose cell is the largest that is not longer
@@ -45,6 +57,7 @@ uint8_t lm_scan_lod(const struct lm_db *db, uint32_t cell_mm);
 struct lm_scan_blend {
     bool is_on, is_stepped;
     uint32_t natural, crowned, flat, grown_shift; /* with is_stepped, as in struct lm_k_blend */
+    bool tells_runs; /* which tiles the line crosses is told, be is_on or not; false at first */
 };
 
 /* Prepare the blend for lines whose cells are cell_mm long, below 2^30. It is on if they are

@@ -51,7 +51,6 @@ struct lm_detail_patch {
     uint32_t tile_count, shape_count;
     uint32_t left_out;   /* items for which there was no room, of all patches: only grows */
     uint16_t structures; /* bit n: class n is of the kind structure */
-    uint8_t side_log2;   /* of a tile of LOD 0, BAM of latitude */
     struct lm_detail_tile tile[LM_DETAIL_TILES_MAX];
     struct lm_detail_shape shape[LM_DETAIL_SHAPES_MAX];
     /* Shapes of each block of lines: entry[first[b]] .. entry[first[b + 1] - 1]. */
@@ -71,12 +70,11 @@ void lm_detail_patch_add(struct lm_detail_patch *p, const struct lm_detail_reade
  * on each other. Cost: some 30 instructions a shape. */
 void lm_detail_patch_close(struct lm_detail_patch *p);
 
-/* Draw the detail of line `line` into its cells. `path` is the one that they were read along. Cost:
- * 5 instructions a cell, 13 for a shape that the line's block holds, 100 for one that the line
- * meets, and 5 for a cell that is drawn, at most LM_DETAIL_CELLS_A_LINE of them; four cells of a
- * surface cost and count as one. */
+/* Draw the detail of line `line` into its cells, which were read by a scan that tells its runs.
+ * Cost: 3 instructions a cell, 13 for a shape that the line's block holds, 100 for one that the
+ * line meets, and 5 for a cell that is drawn, at most LM_DETAIL_CELLS_A_LINE of them; four cells of
+ * a surface cost and count as one. */
 void lm_detail_patch_draw(const struct lm_detail_patch *p, uint32_t line,
-                          const struct lm_ground_path *path, struct lm_scan_line *ground,
-                          uint32_t cells);
+                          struct lm_scan_line *ground, uint32_t cells);
 
 #endif

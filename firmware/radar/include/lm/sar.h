@@ -18,8 +18,8 @@
  *       \                  /     lines run from near to far; line 0 is at the left
  *       |\                /|
  *       +-\--------------/-+
- *          \ guard cells/        LM_SAR_GUARD, traced and not displayed; with layover, cells before
- *           \          /         them and behind the far end, from where power is displaced
+ *          \  overscan  /        with layover, cells before the patch and behind its far end from
+ *           \          /         where power is displaced: traced and not displayed
  *           \----------/
  *            \ fore-  /          from 1/16 of the way on: casts shadows into the patch;
  *             \ground/           traced along every LM_SAR_FOREGROUND_LINES-th line
@@ -49,9 +49,7 @@
 #include "lm/tone.h"
 
 enum {
-    LM_SAR_GUARD = 4, /* cells before the patch, traced and not displayed */
-    LM_SAR_OVERSCAN_MAX =
-        48, /* cells that are traced before the guard cells, or behind the patch */
+    LM_SAR_OVERSCAN_MAX = 48,     /* cells that are traced before the patch, or behind it */
     LM_SAR_FOREGROUND_LINES = 16, /* lines from one traced foreground to the next */
 
     /* Lines sampled ahead of the line that is drawn. Defocus smears the lines before their own, a
@@ -120,7 +118,7 @@ struct lm_sar {
     uint32_t lines;                           /* number of lines: even, radar->sar.cells or more */
     uint64_t line_us;                         /* time between two lines */
     uint32_t dwell_ms;                        /* below 2^17; a longer dwell counts as that */
-    struct lm_ground_patch ground;            /* guard cells and patch */
+    struct lm_ground_patch ground;            /* the traced cells */
     struct lm_ground_patch foreground_ground; /* terrain before them */
     struct lm_range_grid grid;
     struct lm_foreground foreground;
@@ -141,7 +139,7 @@ struct lm_sar {
     struct lm_patch_rain rain;
     struct lm_sar_relief relief;
     uint32_t lean_q16; /* displacement by layover over height; 0: there is none */
-    uint32_t overscan; /* cells that are traced before the guard cells */
+    uint32_t overscan; /* cells that are traced before the patch */
     uint32_t traced;   /* cells that are traced in all */
     struct lm_layover layover;
     uint32_t defocus_lines_q8; /* width of the defocus; 256: none */
@@ -173,7 +171,7 @@ struct lm_sar {
  * - LM_REFUSED_CELL: cell_mm is outside the table's cell_min_mm..cell_max_mm;
  * - LM_REFUSED_POLE: lm_geo_is_polar(centre);
  * - LM_REFUSED_FAR: range_m is above 250,000;
- * - LM_REFUSED_NEAR: range_m is below 1,000, the guard cells would begin nearer than 16
+ * - LM_REFUSED_NEAR: range_m is below 1,000, the patch would begin nearer than 16
  *   LM_RANGE_MIN_M, or the patch would need more than LM_PATCH_LINES_MAX lines;
  * - LM_REFUSED_HEIGHT: height_m_q6 is more than 30 km above or below mean sea level;
  * - LM_REFUSED_SQUINT: in flight (setup->flight), the squint is below the table's squint_min, ahead
@@ -228,8 +226,8 @@ bool lm_sar_sample_ahead(struct lm_sar *s, struct lm_tile_cache *tiles, uint32_t
 
 /* Draw the next line and move on. Call it while s->line < s->lines.
  *
- * - Result: levels (dB * 256), valid until the next call, and line->grey. In both the first cell of
- *   the display has the index LM_SAR_GUARD.
+ * - Result: levels (dB * 256), valid until the next call, and line->grey. In both the
+ *   first cell of the display has the index 0.
  * - line->ground belongs to the line sampled last, up to LM_SAR_AHEAD lines further on.
  * - Samples that lm_sar_sample_ahead has not taken are taken here.
  *
@@ -240,7 +238,7 @@ const int16_t *lm_sar_draw_line(struct lm_sar *s, struct lm_tile_cache *tiles,
 /* Sample line `number`: the stages from the map to noise and speckle, without scatterers and
  * without defocus. Part of lm_sar_draw_line; public for tests. Result:
  * - line->ground: the cells of the line, from index `overscan` on;
- * - level_db_q8, from index LM_SAR_GUARD on: the levels;
+ * - level_db_q8: the levels;
  * - s->horizon: the horizon that the line started with. */
 void lm_sar_sample_line(struct lm_sar *s, struct lm_tile_cache *tiles, uint32_t number,
                         struct lm_line *line, int16_t *level_db_q8);

@@ -43,8 +43,7 @@ enum { LM_RADAR_NAME_SIZE = 8 };
 enum {
     LM_RADAR_RANGE_MAX_M = 200000,               /* with a window behind it: below 400 km */
     LM_RADAR_CELLS_MAX = LM_CELLS_MAX * 16 / 23, /* a window has 23/16 of them */
-    LM_RADAR_PATCH_GUARD = 4,                    /* cells before a patch, traced and not shown */
-    LM_RADAR_PATCH_CELLS_MAX = LM_CELLS_MAX - LM_RADAR_PATCH_GUARD,
+    LM_RADAR_PATCH_CELLS_MAX = LM_CELLS_MAX,
     LM_RADAR_BEAM_MIN = 1 << 23,       /* 0.7 degree */
     LM_RADAR_RATE_MIN = 1 << 23,       /* 0.7 degree a second */
     LM_RADAR_SPEED_MAX_MM_S = 2000000, /* as fast as aircraft and targets are */

@@ -16,9 +16,7 @@
  *           \                |                 /
  *            \            centre              /
  *             \                              /
- *              \----------------------------/     cell `guard`: the patch begins
- *               \  guard cells, not shown  /
- *                \------------------------/       cell 0
+ *              \----------------------------/     cell 0
  *
  *                         antenna, centre_m_q8 from the centre
  *
@@ -45,9 +43,8 @@ struct lm_patch_geometry {
     fx_bam_t look;        /* azimuth of the line of sight to the centre, from north */
     uint32_t centre_m_q8; /* ground range from the antenna to the centre */
     uint32_t cell_m_q8, lines, cells;
-    uint32_t guard;    /* number of the cells that lie before the patch */
     uint32_t overscan; /* cells that are traced before those, and not counted here */
-    uint32_t traced;   /* all that are traced: overscan, guard, patch, overscan behind it */
+    uint32_t traced;   /* all that are traced: overscan, patch, overscan behind it */
     uint32_t first;    /* cells before this one are not displayed */
     struct lm_target_heights heights;
     uint32_t wavelength_um;

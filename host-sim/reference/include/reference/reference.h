@@ -29,9 +29,8 @@ enum {
     REF_SPECKLE_SLICES = 1024,
     REF_GRAIN_VALUES = 256,
     REF_GRAIN_HALVES = 17,
-    REF_GUARD_CELLS = 4,
-    REF_OVERSCAN_MAX = 48,                                        /* cells at either end */
-    REF_LINE_MAX = 4096 + REF_GUARD_CELLS + 2 * REF_OVERSCAN_MAX, /* bins of a patch's line */
+    REF_OVERSCAN_MAX = 48,                      /* cells at either end */
+    REF_LINE_MAX = 4096 + 2 * REF_OVERSCAN_MAX, /* bins of a patch's line */
     REF_COARSE_CELLS = 128
 };
 
@@ -194,8 +193,8 @@ struct ref_place ref_path_at(const struct ref_path *path, double u);
 struct ref_place ref_patch_offset(struct ref_place centre, double azimuth_deg, double across_m,
                                   double along_m);
 
-/* Cells of a patch's line that are traced besides guard cells and shown ones: before the guard
- * cells, and behind the patch. Each up to REF_OVERSCAN_MAX. */
+/* Cells of a patch's line that are traced besides the shown ones: before the patch, and behind it.
+ * Each up to REF_OVERSCAN_MAX. */
 struct ref_overscan {
     unsigned before, behind;
 };
@@ -235,6 +234,11 @@ size_t ref_first_shown(const struct ref_bin *bins, size_t count, const struct re
 
 /* T_0 of a GM line, whose first cell shows flat ground's share. */
 double ref_gm_horizon(const struct ref_bin *first, const struct ref_view *view);
+
+/* T_0 of a line behind a foreground, whose horizon is given: the first bin that is shown rises over
+ * it at most as the second does over the first, or as flat ground where the second does not. */
+double ref_behind_foreground(const struct ref_bin *bins, size_t count, const struct ref_view *view,
+                             double horizon);
 
 /* Largest t of the bins (range, elevation and height are read), -INFINITY for none. */
 double ref_highest_tangent(const struct ref_bin *bins, size_t count, double antenna_m);
@@ -621,11 +625,10 @@ int ref_add_mover(const struct ref_mover *m, size_t lines, size_t cells, double 
 /* ---- whole pictures (picture.c) ---- */
 
 struct ref_picture {
-    unsigned line_count, cell_count, guard_count; /* guard cells come before the shown ones */
-    struct ref_overscan
-        overscan;           /* of a patch: cells before the guard cells and behind the shown */
-    struct ref_bin *bins;   /* owned: line_count x all of these cells */
-    double *start_horizons; /* owned: T before the first bin of each line */
+    unsigned line_count, cell_count;
+    struct ref_overscan overscan; /* of a patch: cells before and behind the shown */
+    struct ref_bin *bins;         /* owned: line_count x all of these cells */
+    double *start_horizons;       /* owned: T before the first bin of each line */
     struct ref_view view;
     unsigned level; /* of the image */
 };
@@ -642,8 +645,7 @@ struct ref_gm {
 struct ref_sar {
     struct ref_place centre;
     double azimuth_deg; /* of the line of sight at the centre, away from the radar */
-    double
-        range_m; /* S, along the ground from antenna to centre; > half the patch and guard cells */
+    double range_m;     /* S, along the ground from antenna to centre; > half the patch */
     double antenna_m, cell_m;
     unsigned cell_count;              /* along either side of the square */
     bool is_plan;                     /* without layover */
@@ -700,8 +702,8 @@ int ref_sar_patch(struct ref_picture *picture, const struct ref_db *db, const st
                   const struct ref_params *params);
 void ref_picture_free(struct ref_picture *picture);
 
-/* The bin of a line and cell. Cells -guard_count..-1 are the guard cells, overscan lies before them
- * and from cell_count on. */
+/* The bin of a line and cell. Overscan lies before cell 0 and from
+ * cell_count on. */
 struct ref_bin *ref_picture_bin(const struct ref_picture *picture, unsigned line, int cell);
 
 /* ---- a sector as the receiver hands it on (sector.c) ---- */

@@ -147,6 +147,33 @@ static uint32_t compare(const struct world *w, uint32_t level, const struct lm_g
     return known;
 }
 
+/* Compare the runs that are told with the tiles that the places lie in. A line that is told of
+ * LM_SCAN_RUNS_MAX tiles may cross more. */
+static void compare_runs(const struct world *w, uint32_t level, const struct lm_ground_path *p,
+                         uint32_t cells)
+{
+    const struct lm_scan_run *run = w->line.run, *const end = run + w->line.run_count;
+    for (uint32_t i = 0; i < cells; i++) {
+        const struct place at = place_at(p, i);
+        const double share = fabs(at.latitude) / 1073741824.0 * 16;
+        const int zone = share < 11 ? 0 : share < 13 ? 1 : share < 15 ? 2 : 3;
+        const double side = ldexp(64, w->map.db.shift0 + (int)level);
+        const double turn = 4294967296.0, east = at.longitude - floor(at.longitude / turn) * turn;
+        const double row = (at.latitude + 1073741824.0) / side, column = east / ldexp(side, zone);
+        while (run < end && run->end <= i) {
+            run++;
+        }
+        if (run == end) {
+            assert_int_equal(w->line.run_count, LM_SCAN_RUNS_MAX);
+            return;
+        }
+        if (fabs(row - round(row)) > 1e-4 && fabs(column - round(column)) > 1e-4) {
+            assert_int_equal(run->row, (uint32_t)floor(row));
+            assert_int_equal(run->column, (uint32_t)floor(column));
+        }
+    }
+}
+
 /* A path of `cells` steps of step_m from a place, bending by so many 2^-32 BAM a step. */
 static struct lm_ground_path path_from(double latitude_deg, double longitude_deg,
                                        double azimuth_deg, double step_m, double bend_m)
@@ -170,8 +197,10 @@ static uint32_t scan_and_compare(struct world *w, uint8_t level, const struct lm
     lm_scan_line_prefetch(&w->map.tiles, level, p, cells);
     tiny_map_read_tiles(&w->map);
     const uint32_t misses = w->map.tiles.count.misses;
-    lm_scan_line_run(&w->line, &w->map.tiles, level, NULL, p, cells);
+    const struct lm_scan_blend nearest = {.tells_runs = true};
+    lm_scan_line_run(&w->line, &w->map.tiles, level, &nearest, p, cells);
     assert_int_equal(w->map.tiles.count.misses, misses);
+    compare_runs(w, level, p, cells);
     return compare(w, level, p, cells);
 }
 

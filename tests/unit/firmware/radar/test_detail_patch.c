@@ -13,7 +13,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { CELLS = 256, GUARD = 4, SHIFT0 = 9 };
+enum { CELLS = 256, SHIFT0 = 9 };
 
 static const double pi = 3.14159265358979323846, degree = 3.14159265358979323846 / 180;
 
@@ -79,9 +79,8 @@ static struct scene scene_at(double latitude, double look_deg, double range_m, d
                                      .centre_m_q8 = (uint32_t)lround(range_m * 256),
                                      .cell_m_q8 = (uint32_t)lround(cell_m * 256),
                                      .lines = s.lines,
-                                     .cells = CELLS + GUARD,
-                                     .traced = CELLS + GUARD,
-                                     .guard = GUARD};
+                                     .cells = CELLS,
+                                     .traced = CELLS};
     lm_detail_patch_clear(&patch, &map.db);
     return s;
 }
@@ -134,7 +133,7 @@ static struct outline outline_of(const struct scene *s, const struct lm_detail_i
 static void in_item(const struct scene *s, const struct outline *o, uint32_t line, uint32_t cell,
                     double *u, double *v)
 {
-    const double y = ((int)cell - GUARD + 0.5 - CELLS / 2.0) * s->cell_m;
+    const double y = ((int)cell + 0.5 - CELLS / 2.0) * s->cell_m;
     const double x = (line + 0.5 - s->lines / 2.0) * s->cell_m * (s->range_m + y) / s->range_m;
     const double right_m = x - o->right_m, beyond_m = y - o->beyond_m;
     *u = (right_m * o->sine + beyond_m * o->cosine) / o->half_length_m;
@@ -168,11 +167,10 @@ static struct lm_detail_item random_block(void)
 
 static void draw(const struct scene *s, uint32_t line)
 {
-    static const struct lm_ground_path nowhere;
-    for (uint32_t i = 0; i < CELLS + GUARD; i++) {
+    for (uint32_t i = 0; i < CELLS; i++) {
         ground.cell[i] = 100 << 8 | TINY_SOIL << 4;
     }
-    lm_detail_patch_draw(&patch, line, &nowhere, &ground, s->g.cells);
+    lm_detail_patch_draw(&patch, line, &ground, s->g.cells);
 }
 
 /* Any block at any place and turn, in patches near and far, wide and narrow: a cell is drawn if its
@@ -205,7 +203,7 @@ TEST(cells_whose_middle_is_inside_are_drawn_and_no_others)
         const struct outline outline = outline_of(&s, item);
         for (uint32_t line = 0; line < s.lines; line++) {
             draw(&s, line);
-            for (uint32_t i = 0; i < CELLS + GUARD; i++) {
+            for (uint32_t i = 0; i < CELLS; i++) {
                 double u, v;
                 in_item(&s, &outline, line, i, &u, &v);
                 const double off = fmax(fabs(u), fabs(v)) - 1;
@@ -245,7 +243,7 @@ TEST(no_line_of_the_patch_misses_a_thin_wall)
             const double x = (line + 0.5 - s.lines / 2.0) * s.cell_m * (s.range_m + y0) / s.range_m;
             int drawn = 0;
             draw(&s, line);
-            for (uint32_t i = 0; i < CELLS + GUARD; i++) {
+            for (uint32_t i = 0; i < CELLS; i++) {
                 drawn += (ground.cell[i] >> 4 & 15) == TINY_STRUCTURE;
             }
             if (fabs(x - x0) < reach && fabs(y0) < 200) {
@@ -276,7 +274,7 @@ TEST(a_gable_is_highest_along_its_ridge)
     int judged = 0;
     for (uint32_t line = 0; line < s.lines; line++) {
         draw(&s, line);
-        for (uint32_t i = 0; i < CELLS + GUARD; i++) {
+        for (uint32_t i = 0; i < CELLS; i++) {
             double u, v;
             in_item(&s, &outline, line, i, &u, &v);
             if (fmax(fabs(u), fabs(v)) < 0.97) {
@@ -334,7 +332,7 @@ TEST(a_line_lights_the_ground_that_it_crosses)
     int lit = 0;
     for (uint32_t line = 0; line < s.lines; line++) {
         draw(&s, line);
-        for (uint32_t i = 0; i < CELLS + GUARD; i++) {
+        for (uint32_t i = 0; i < CELLS; i++) {
             assert_int_equal(ground.cell[i] & 0xFF, TINY_SOIL << 4);
             assert_true(ground.cell[i] >> 8 == 100 || ground.cell[i] >> 8 >= 178);
             lit += ground.cell[i] >> 8 != 100;
@@ -372,14 +370,13 @@ TEST(a_surface_covers_the_classes_that_it_names)
         lm_detail_patch_close(&patch);
         const struct outline outline = outline_of(&s, &strip);
         for (uint32_t line = 0; line < s.lines; line++) {
-            static const struct lm_ground_path nowhere;
-            for (uint32_t i = 0; i < CELLS + GUARD; i++) {
+            for (uint32_t i = 0; i < CELLS; i++) {
                 ground.cell[i] =
                     (i % 3 == 0 ? 100 << 8 | TINY_TREES << 4 | 7 : 100 << 8 | TINY_SOIL << 4 | 7);
                 ground.elevation_m_q14[i] = (int32_t)i;
             }
-            lm_detail_patch_draw(&patch, line, &nowhere, &ground, s.g.cells);
-            for (uint32_t i = 0; i < CELLS + GUARD; i++) {
+            lm_detail_patch_draw(&patch, line, &ground, s.g.cells);
+            for (uint32_t i = 0; i < CELLS; i++) {
                 double u, v;
                 in_item(&s, &outline, line, i, &u, &v);
                 const double off = fmax(fabs(u), fabs(v)) - 1;
@@ -423,7 +420,7 @@ TEST(surfaces_lie_in_their_layers)
         lm_detail_patch_close(&patch);
         for (uint32_t line = 0; line < s.lines; line++) {
             draw(&s, line);
-            for (uint32_t i = 0; i < CELLS + GUARD; i++) {
+            for (uint32_t i = 0; i < CELLS; i++) {
                 seen[ground.cell[i] >> 4 & 15]++;
             }
         }
@@ -515,11 +512,11 @@ TEST(a_building_stands_level_on_the_terrain_under_its_middle)
     int32_t level = 0;
     int inside = 0;
     for (uint32_t line = 0; line < s.lines; line++) {
-        for (uint32_t i = 0; i < CELLS + GUARD; i++) {
+        for (uint32_t i = 0; i < CELLS; i++) {
             ground.elevation_m_q14[i] = -1;
         }
         draw(&s, line);
-        for (uint32_t i = 0; i < CELLS + GUARD; i++) {
+        for (uint32_t i = 0; i < CELLS; i++) {
             if ((ground.cell[i] >> 4 & 15) != TINY_STRUCTURE) {
                 assert_int_equal(ground.elevation_m_q14[i], -1);
                 continue;

@@ -127,11 +127,11 @@ TEST(a_shadow_is_some_16_dB_below_the_grass_and_has_grain)
         const int16_t *level_q8 = lm_sar_draw_line(&sar, &map.tiles, &tone, &line);
         for (uint32_t i = 0; k >= 16 && i < CELLS; i++) {
             const double north_m = (i + 0.5 - CELLS / 2.0) * 5;
-            const double db = decibels(level_q8[LM_SAR_GUARD + i]);
+            const double db = decibels(level_q8[i]);
             if (north_m > -250 && north_m < 50) {
-                note(&shadow, line.grey[LM_SAR_GUARD + i], db);
+                note(&shadow, line.grey[i], db);
             } else if (north_m > 250 || north_m < -350) {
-                note(&grass, line.grey[LM_SAR_GUARD + i], db);
+                note(&grass, line.grey[i], db);
             }
         }
     }

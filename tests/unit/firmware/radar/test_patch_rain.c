@@ -14,7 +14,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { LINES = 256, CELLS = LINES + LM_SAR_GUARD };
+enum { LINES = 256, CELLS = LINES };
 
 static const double wavelength_m = 0.031228;
 
@@ -43,7 +43,6 @@ static struct world *make_world(double range_m, double height_m, double cell_m)
         .cell_m_q8 = (uint32_t)lround(cell_m * 256),
         .lines = LINES,
         .cells = CELLS,
-        .guard = LM_SAR_GUARD,
         .heights = {.antenna_m_q10 = (int32_t)lround(height_m * 1024)},
         .wavelength_um = w->radar.wavelength_um,
     };
@@ -81,8 +80,7 @@ static double across_m(const struct world *w, uint32_t line)
 
 static double range_m(const struct world *w, uint32_t cell)
 {
-    return w->geometry.centre_m_q8 / 256.0 +
-           (cell + 0.5 - LINES / 2.0 - LM_SAR_GUARD) * w->view.cell_m;
+    return w->geometry.centre_m_q8 / 256.0 + (cell + 0.5 - LINES / 2.0) * w->view.cell_m;
 }
 
 /* What rain takes of the echoes of a line, read from levels far above all noise. */
@@ -355,7 +353,7 @@ static void draw(const struct lm_environment *e, double *peak_db, double *mean_d
     }
     for (uint32_t k = 0; k < LINES; k++) {
         const int16_t *drawn_q8 = lm_sar_draw_line(&sar, &map.tiles, &tone, &line);
-        for (uint32_t i = LM_SAR_GUARD; i < CELLS; i++) {
+        for (uint32_t i = 0; i < CELLS; i++) {
             const int32_t level_q8 = drawn_q8[i];
             peak_q8 = level_q8 > peak_q8 ? level_q8 : peak_q8;
             sum += k < 100 ? pow(10, level_q8 / 2560.0) : 0;

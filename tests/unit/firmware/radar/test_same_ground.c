@@ -45,7 +45,7 @@ static void draw_patch(struct tiny_map *map, int east, fx_bam_t look, double lev
         tiny_map_read_tiles(map);
         lm_sar_sample_line(&sar, &map->tiles, number, &line, level_q8);
         for (int i = 0; i < CELLS; i++) {
-            level_db[k][i] = decibels(level_q8[LM_SAR_GUARD + i]);
+            level_db[k][i] = decibels(level_q8[i]);
         }
     }
 }

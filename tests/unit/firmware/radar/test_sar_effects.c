@@ -190,7 +190,7 @@ static double middle_of_the_bright(void)
     double power = 0, moment = 0;
     for (int k = CELLS / 2 - 3; k < CELLS / 2 + 3; k++) {
         for (int i = 0; i < CELLS; i++) {
-            const double p = power_of(picture[k][LM_SAR_GUARD + i]);
+            const double p = power_of(picture[k][i]);
             power += p > 3 ? p : 0;
             moment += p > 3 ? p * i : 0;
         }
@@ -234,7 +234,7 @@ static double mean_db_of_cells(int first, int end)
     double power = 0;
     for (int k = 0; k < CELLS; k++) {
         for (int i = first; i < end; i++) {
-            power += power_of(picture[k][LM_SAR_GUARD + i]);
+            power += power_of(picture[k][i]);
         }
     }
     return 10 * log10(power / CELLS / (end - first));
@@ -260,7 +260,7 @@ TEST(what_layover_takes_from_the_ends_of_a_patch_is_traced_beyond_them)
     print_message("# %u cells traced, %u of them before the guard cells\n", sar.traced,
                   sar.overscan);
     assert_in_range(sar.overscan, 12, 24);
-    assert_in_range(sar.traced - sar.overscan - LM_SAR_GUARD - CELLS, 12, 24);
+    assert_in_range(sar.traced - sar.overscan - CELLS, 12, 24);
     const double middle_db = mean_db_of_cells(100, 156);
     print_message("# near end %+.1f dB, far end %+.1f dB\n", mean_db_of_cells(0, 8) - middle_db,
                   mean_db_of_cells(CELLS - 8, CELLS) - middle_db);
@@ -270,7 +270,7 @@ TEST(what_layover_takes_from_the_ends_of_a_patch_is_traced_beyond_them)
     plan.is_plan = true;
     scene.relief = lm_sar_relief_of(&map.tiles, &lm_radar_default, &plan);
     draw(&plan, &scene);
-    assert_int_equal(sar.traced, LM_SAR_GUARD + CELLS);
+    assert_int_equal(sar.traced, CELLS);
     tiny_map_close(&map);
 }
 
@@ -357,7 +357,7 @@ static double width_of_point(const struct lm_sar_flight *flight, bool is_steady,
     *power = 0;
     for (int k = 0; k < CELLS; k++) {
         for (int i = 0; i < CELLS; i++) {
-            across[k] += power_of(picture[k][LM_SAR_GUARD + i]);
+            across[k] += power_of(picture[k][i]);
         }
         most = fmax(most, across[k]);
         *power += across[k];

@@ -77,7 +77,9 @@ static double horizon_of(const struct lm_sector *s, const struct ref_bin *bins, 
 {
     const size_t first = ref_first_shown(bins, cells, view);
     const bool is_open = s->foreground.grid.cells == 0 || s->foreground_horizon == LM_HORIZON_OPEN;
-    return is_open ? ref_gm_horizon(&bins[first], view) : ldexp((double)s->foreground_horizon, -40);
+    return is_open ? ref_gm_horizon(&bins[first], view)
+                   : ref_behind_foreground(bins, cells, view,
+                                           ldexp((double)s->foreground_horizon, -40));
 }
 
 static struct ref_antenna antenna_of(const struct lm_radar *radar)

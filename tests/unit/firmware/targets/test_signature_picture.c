@@ -44,7 +44,7 @@ static void draw_patch(struct fixture *f, const struct lm_target_set *set,
     for (int k = -beside; k < SIDE + beside; k++) {
         const int16_t *level_q8 = lm_sar_draw_line(&f->sar, &f->world.tiles, &f->tone, &f->line);
         if (k >= 0 && k < SIDE) {
-            memcpy(picture[k], level_q8 + LM_SAR_GUARD, sizeof picture[k]);
+            memcpy(picture[k], level_q8, sizeof picture[k]);
         }
     }
 }
@@ -175,7 +175,7 @@ static size_t draw_all(struct fixture *f, const struct lm_target_set *set, doubl
         const int16_t *level_q8 = lm_sar_draw_line(&f->sar, &f->world.tiles, &f->tone, &f->line);
         shadow_db[k] = f->sar.shadow_db_q8 / 256.0;
         for (int c = 0; c < SIDE; c++) {
-            level_db[k * SIDE + (uint32_t)c] = level_q8[LM_SAR_GUARD + c] / 256.0;
+            level_db[k * SIDE + (uint32_t)c] = level_q8[c] / 256.0;
         }
     }
     return f->sar.lines;

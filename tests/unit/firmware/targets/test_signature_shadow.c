@@ -8,7 +8,7 @@
 #include <stdlib.h>
 
 /* A patch of 128 cells of a metre around 46 N 11 E, seen from the west: east is away. */
-enum { LINES = 128, GUARD = 4, CELLS = LINES + GUARD, BITS = 26 };
+enum { LINES = 128, CELLS = LINES, BITS = 26 };
 static const double range_m = 20000, height_m = 6000;
 static const struct lm_target_heights heights = {6000 * 1024, 0};
 
@@ -45,7 +45,6 @@ static const struct lm_patch_geometry geometry = {.look = FX_BAM_90,
                                                   .cell_m_q8 = 256,
                                                   .lines = LINES,
                                                   .cells = CELLS,
-                                                  .guard = GUARD,
                                                   .heights = {6000 * 1024, 0},
                                                   .wavelength_um = X_BAND_UM,
                                                   .dwell_ms = 2000};

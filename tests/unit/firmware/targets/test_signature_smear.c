@@ -10,7 +10,7 @@
 #include <stdlib.h>
 
 /* A patch of 128 cells of a metre around 46 N 11 E, seen from the west for two seconds. */
-enum { LINES = 128, GUARD = 4, CELLS = LINES + GUARD, NOTHING_Q8 = -120 * 256 };
+enum { LINES = 128, CELLS = LINES, NOTHING_Q8 = -120 * 256 };
 static const double range_m = 20000, height_m = 6000, flies_m_s = 200, dwell_s = 2;
 static const double middle = (LINES - 1) / 2.0, degree = 3.14159265358979323846 / 180;
 
@@ -83,7 +83,6 @@ static void draw(struct fixture *f, const struct lm_target *t)
                                         .cell_m_q8 = 256,
                                         .lines = LINES,
                                         .cells = CELLS,
-                                        .guard = GUARD,
                                         .heights = heights,
                                         .wavelength_um = X_BAND_UM,
                                         .across_mm_s = (int32_t)flies_m_s * 1000,
@@ -113,8 +112,8 @@ static void focus(struct fixture *f, const struct motion *m)
         double right_m, beyond_m;
         corner_place(&corners[i], (270 - heading_of(m)) * degree, &right_m, &beyond_m);
         const double drift_m_s = 2 * m->right_m_s - m->right_m_s * m->right_m_s / flies_m_s;
-        const struct ref_mover point = {middle + right_m, GUARD + middle + beyond_m,
-                                        drift_m_s * dwell_s, -m->closing_m_s * dwell_s,
+        const struct ref_mover point = {middle + right_m, middle + beyond_m, drift_m_s * dwell_s,
+                                        -m->closing_m_s * dwell_s,
                                         pow(10, corners[i].dbsm / 10) / area_m2};
         assert_int_equal(ref_add_mover(&point, LINES, CELLS, f->wanted[0]), 0);
     }

@@ -16,8 +16,8 @@
 
 static const double pi = 3.14159265358979323846;
 
-/* A patch of 128 cells of 2 m, 20 km away, with four guard cells. */
-enum { LINES = 128, GUARD = 4, CELLS = LINES + GUARD, NOTHING_Q8 = -120 * 256 };
+/* A patch of 128 cells of 2 m, 20 km away. */
+enum { LINES = 128, CELLS = LINES, NOTHING_Q8 = -120 * 256 };
 static const double height_m = 6000, cell_m = 2, range_m = 20000;
 
 /* Large, and only one is used at a time. */
@@ -32,7 +32,6 @@ static struct lm_patch_geometry geometry(double lat, double lon, double look)
                                       .cell_m_q8 = (uint32_t)(cell_m * 256),
                                       .lines = LINES,
                                       .cells = CELLS,
-                                      .guard = GUARD,
                                       .heights = {(int32_t)(height_m * 1024), 0},
                                       .wavelength_um = X_BAND_UM};
 }
@@ -150,7 +149,7 @@ TEST(a_points_width_and_side_lobes_are_those_of_the_taylor_table)
             const struct lm_patch_geometry g = geometry(46, 11, 0);
             find_points(&t, 1, &g, 0);
             draw(&g, NOTHING_Q8);
-            cut[i] = pow(10, picture[60][GUARD + 70] / 2560.0);
+            cut[i] = pow(10, picture[60][70] / 2560.0);
         }
         measure(cut, &width, &side_db);
         print_message("# %s: width %.3f cells, side lobe %.2f dB\n", is_along ? "along" : "across",
@@ -196,7 +195,7 @@ TEST(a_point_is_at_its_place_with_all_its_power)
         for (int k = 0; k < LINES; k++) {
             for (int c = 0; c < CELLS; c++) {
                 const double p = picture[k][c] == NOTHING_Q8 ? 0 : pow(10, picture[k][c] / 2560.0);
-                power += p, across += p * k, along += p * (c - GUARD);
+                power += p, across += p * k, along += p * (c);
             }
         }
         worst_cells = fmax(worst_cells, hypot(across / power - line, along / power - cell));
@@ -307,8 +306,8 @@ TEST(a_fluctuating_point_has_one_strength_in_a_patch)
             find_points(&t, 1, &g, 0);
             draw(&g, NOTHING_Q8);
             const int16_t *left = picture[59], *right = picture[61];
-            assert_true(abs(left[GUARD + 70] - right[GUARD + 70]) < 64);
-            strength[g.epoch] = picture[60][GUARD + 70];
+            assert_true(abs(left[70] - right[70]) < 64);
+            strength[g.epoch] = picture[60][70];
         }
         assert_true(strength[0] != strength[1]);
     }
@@ -335,7 +334,7 @@ TEST(a_mover_is_displaced_by_r_v_over_v_sin_o_within_a_cell)
         /* s v / V at its range, where lines are s / S cells apart. */
         const double expected = 64 + range_m * closing / across_m_s / cell_m;
         assert_true(fabs(points.scatterer[0].across_cells_q8 / 256.0 - expected) < 1);
-        assert_true(fabs(points.scatterer[0].along_cells_q8 / 256.0 - (GUARD + 70)) < 0.1);
+        assert_true(fabs(points.scatterer[0].along_cells_q8 / 256.0 - (70)) < 0.1);
     }
 }
 
@@ -366,7 +365,7 @@ TEST(what_a_mover_is_smeared_to_is_what_the_aperture_makes_of_it)
             }
         }
         const double drift = (2 * right - right * right / flies_m_s) * 2 / cell_m;
-        const struct ref_mover mover = {64, GUARD + 70, drift, -closing * 2 / cell_m, 1};
+        const struct ref_mover mover = {64, 70, drift, -closing * 2 / cell_m, 1};
         memset(wanted, 0, sizeof wanted);
         assert_int_equal(ref_add_mover(&mover, LINES, CELLS, wanted[0]), 0);
         const struct extent is = extent_of(found[0], LINES, CELLS);
@@ -430,16 +429,16 @@ TEST(a_wall_hides_what_is_lower_than_the_ray_over_it_on_all_lines)
     int32_t horizon[CELLS];
     double highest = -2;
     for (int i = 0; i < CELLS; i++) {
-        const double at_m = range_m + middle_of(i - GUARD);
+        const double at_m = range_m + middle_of(i);
         horizon[i] = (int32_t)ldexp(highest, BITS);
         highest = fmax(highest, ref_tangent(height_m, at_m, i == WALL ? 30 : 0));
     }
     for (int up_m = 0; up_m < 20; up_m++) {
         for (int is_before = 0; is_before < 2; is_before++) {
-            struct lm_target t = point_in(64, WALL - GUARD + (is_before ? -4 : 33), 30);
+            struct lm_target t = point_in(64, WALL + (is_before ? -4 : 33), 30);
             t.elevation_m_q6 = up_m * 64;
             seal_target(&t);
-            const double at_m = range_m + middle_of(WALL - GUARD);
+            const double at_m = range_m + middle_of(WALL);
             const bool is_seen = is_before || ref_tangent(height_m, at_m + 66, up_m) >
                                                   ref_tangent(height_m, at_m, 30);
             assert_true(is_before || is_seen == (up_m >= 11));
@@ -467,8 +466,7 @@ TEST(layover_brings_a_body_nearer_by_its_height_times_the_lean)
     struct lm_patch_geometry g = geometry(46, 11, 0);
     g.lean_q16 = (int32_t)lround(0.3 * 65536);
     find_points(&t, 1, &g, 0);
-    assert_true(
-        fabs(points.scatterer[0].along_cells_q8 / 256.0 - (GUARD + 70 - 0.3 * 40 / cell_m)) < 0.1);
+    assert_true(fabs(points.scatterer[0].along_cells_q8 / 256.0 - (70 - 0.3 * 40 / cell_m)) < 0.1);
 }
 
 /* ---- hostile records ---- */

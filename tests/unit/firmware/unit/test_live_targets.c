@@ -338,7 +338,7 @@ static void draw_patch(const struct lm_target_set *set, uint8_t picture[SIDE][SI
     for (int k = -beside; k < SIDE + beside; k++) {
         lm_sar_draw_line(&sar, &map.tiles, &tone, &line);
         if (k >= 0 && k < SIDE) {
-            memcpy(picture[k], line.grey + LM_SAR_GUARD, SIDE);
+            memcpy(picture[k], line.grey, SIDE);
         }
     }
 }
