@@ -20,7 +20,7 @@ $(foreach r,$(ROOMS),$(eval $(O)/firmware/$r/%.o: ROOM := $r))
 WITHOUT_LOOPS := base/% table/% bus/% nav/% page/% unit/% map/db map/detail map/detail_reader map/geoid \
     map/geoid_reader map/images map/slot map/slot_flash map/tile_cache map/tile_fill clutter/sea radar/dbs radar/defocus radar/shower targets/rcs \
     targets/chips targets/mover targets/signature targets/target targets/target_candidates targets/target_patch \
-    targets/chip_sector targets/chip_patch radar/patch_rain radar/beacon radar/sector radar/track radar/track_sight \
+    targets/chip_sector targets/chip_patch targets/chip_slope radar/patch_rain radar/beacon radar/sector radar/track radar/track_sight \
     display/test_pattern display/symbols display/overlay display/view display/cursor
 $(foreach f,$(WITHOUT_LOOPS),$(eval $(O)/firmware/$f.o: OPT_core := $(OPT_rest)))
 $(foreach f,$(UNROLLED),$(eval $(O)/$f.o: OPT_core += -funroll-loops))

@@ -572,15 +572,20 @@ void lm_sar_sample_line(struct lm_sar *s, struct lm_tile_cache *tiles, uint32_t 
                         struct lm_line *line, int16_t *level_db_q8)
 {
     int16_t *clutter_db_q8 = line->lit.level_db_q8;
+    const int32_t *elevation_m_q14 = line->ground.elevation_m_q14 + s->overscan;
     trace_line(s, tiles, number, line);
+    const bool has_chips = s->chips && s->target_patch.on_line[number] != 0;
+    if (has_chips) {
+        lm_target_patch_shade(&s->target_patch, number, &s->geometry, elevation_m_q14,
+                              clutter_db_q8 + s->overscan);
+    }
     if (s->lean_q16 != 0) {
         clutter_db_q8 =
             lm_layover_run(&s->layover, &line->ground, clutter_db_q8, s->laid_db_q8) + s->overscan;
     }
-    if (s->chips && s->target_patch.on_line[number] != 0) {
-        lm_target_patch_shade(&s->target_patch, number, &s->geometry, clutter_db_q8);
-        s->chips->count.cells_left_out +=
-            lm_target_patch_add_chips(&s->target_patch, number, &s->geometry, clutter_db_q8);
+    if (has_chips) {
+        s->chips->count.cells_left_out += lm_target_patch_add_chips(
+            &s->target_patch, number, &s->geometry, elevation_m_q14, clutter_db_q8);
     }
     add_floor_and_speckle(s, number, clutter_db_q8, level_db_q8);
 }
@@ -620,6 +625,8 @@ static bool find_hidden(struct lm_sar *s, struct lm_tile_cache *tiles, uint32_t 
             const uint32_t number = (uint32_t)p->line;
             trace_line(s, tiles, number, line);
             mark_hidden(s, number, line);
+            lm_target_patch_lean(&s->target_patch, number,
+                                 line->ground.elevation_m_q14 + s->overscan, &s->geometry);
             traced++;
         }
     }

@@ -104,6 +104,12 @@ static uint32_t ray_range_m_q8(const struct patch_position *position)
     return fx_max_u32(fx_hypot_u32(position->range_m_q8, position->across_m_q8), 1);
 }
 
+/* Range of the middle of cell 0. */
+static int64_t near_m_q8_of(const struct lm_patch_geometry *g)
+{
+    return g->centre_m_q8 - ((int64_t)g->cells - 1) * g->cell_m_q8 / 2;
+}
+
 /* Scatterer of one return. A return lies along and across its target's ray. s is its range, x its
  * offset across, both along the line of sight through the centre; y is its height above the
  * reference, v the displacement by Doppler. In cells from the middle of cell 0 of line 0:
@@ -128,7 +134,7 @@ static struct lm_patch_scatterer scatterer_of(const struct lm_patch_geometry *g,
         lm_m_q10_of_m_q6(candidate->elevation_m_q6) + lm_m_q10_of_mm(r->up_mm);
     /* Coordinates count from the middle of the first line and of its first cell. */
     const int64_t left_m_q8 = (int64_t)(g->lines - 1) * g->cell_m_q8 / 2;
-    const int64_t near_m_q8 = g->centre_m_q8 - ((int64_t)g->cells - 1) * g->cell_m_q8 / 2;
+    const int64_t near_m_q8 = near_m_q8_of(g);
     const int64_t nearer_m_q8 =
         (int64_t)(top_m_q10 - g->heights.reference_m_q10) * g->lean_q16 >> 18;
     const uint32_t held_m_q8 = (uint32_t)fx_max_i32(range_m_q8, 1);
@@ -233,9 +239,11 @@ static void add_chip(struct lm_target_patch *p, const struct lm_target_candidate
     };
     chip->scatterer = p->scatterer_count - 1;
     chip->shadow_across_cells_q8 = scatterer->across_cells_q8 - in_cells(g, position->shift_m_q8);
+    chip->shadow_along_cells_q8 = in_cells(g, position->range_m_q8 - near_m_q8_of(g));
     chip->area_dbm2_q8 = area_dbm2_q8(g, position->range_m_q8);
     chip->range_m_q8 = position->range_m_q8;
-    chip->foot_m_q10 = lm_m_q10_of_m_q6(candidate->elevation_m_q6);
+    lm_chip_slope_set(&chip->slope, lm_m_q10_of_m_q6(candidate->elevation_m_q6),
+                      (uint32_t)fx_max_i32(position->range_m_q8, 1), g->cell_m_q8, &g->heights);
     lm_chip_patch_set(&chip->patch, candidate->chip, candidate->chip_turn, &cells_there,
                       &p->target[scatterer->target].smear);
     scatterer->is_chip = p->target[scatterer->target].has_chip = true;
@@ -304,30 +312,75 @@ void lm_target_patch_mark_hidden(struct lm_target_patch *p, uint32_t line, const
     }
 }
 
-/* Is a cell of a chip's line more than half in its shadow? */
-static bool is_dark(const struct lm_patch_chip *chip, int32_t right_cells_q8, int32_t beyond)
+/* Cells of a line that were traced: from the overscan before cell 0 to that behind the patch. */
+static int32_t traced_cell(const struct lm_patch_geometry *g, int64_t cell)
 {
-    return beyond >= chip->patch.dark.beyond && beyond < chip->patch.dark.beyond_end &&
-           lm_chip_patch_shadow(&chip->patch, right_cells_q8, lm_cells_q8_of_cells(beyond)) >
+    return (int32_t)fx_clamp_i64(cell, -(int64_t)g->overscan, (int64_t)g->traced - g->overscan - 1);
+}
+
+/* Take the slope between the two ends of what a chip shows. Boxes of pixels are as much longer as
+ * they are farther from each other. */
+static void lean(struct lm_patch_chip *chip, int32_t cell, const int32_t *elevation_m_q14,
+                 const struct lm_patch_geometry *g)
+{
+    struct lm_chip_patch *patch = &chip->patch;
+    const int32_t near = traced_cell(g, (int64_t)cell + patch->lit.beyond);
+    const int32_t far = traced_cell(g, (int64_t)cell + patch->lit.beyond_end);
+    if (far <= near) {
+        return;
+    }
+    lm_chip_slope_lean(&chip->slope, elevation_m_q14[traced_cell(g, cell)],
+                       elevation_m_q14[far] - elevation_m_q14[near],
+                       (uint32_t)(far - near) * g->cell_m_q8, g->lean_q16);
+    const int64_t stretch_q16 = chip->slope.stretch_q16;
+    patch->lit.beyond = (int32_t)((int64_t)patch->lit.beyond * 65536 / stretch_q16) - 1;
+    patch->lit.beyond_end = (int32_t)((int64_t)patch->lit.beyond_end * 65536 / stretch_q16) + 1;
+    patch->half_px_q8[1] = (int32_t)(patch->half_px_q8[1] * stretch_q16 >> 16);
+}
+
+void lm_target_patch_lean(struct lm_target_patch *p, uint32_t line, const int32_t *elevation_m_q14,
+                          const struct lm_patch_geometry *g)
+{
+    for (uint32_t left = p->on_line[line]; left != 0;) {
+        const uint32_t target = take_next(&left);
+        struct lm_patch_chip *chip = &p->chip[target];
+        const struct lm_patch_scatterer *at = &p->scatterer[chip->scatterer];
+        if (p->target[target].has_chip && at->line == (int32_t)line && !chip->slope.is_known) {
+            lean(chip, at->cell, elevation_m_q14, g);
+        }
+    }
+}
+
+/* Is a place on a chip's line more than half in its shadow? It is where a ray over it meets the
+ * level of the foot. */
+static bool is_dark(const struct lm_patch_chip *chip, int32_t right_cells_q8, int64_t level_q8)
+{
+    return level_q8 >= lm_cells_q8_of_cells(chip->patch.dark.beyond) &&
+           level_q8 < lm_cells_q8_of_cells(chip->patch.dark.beyond_end) &&
+           lm_chip_patch_shadow(&chip->patch, right_cells_q8, (int32_t)level_q8) >
                LM_CHIP_SHADOW_ALL / 2;
 }
 
-/* The shadow ends within the chip, at most 64 pixels of 16 m away. Cells are within 2^23 either
- * way, and their difference within 2^24; where it is dark the range of its end is below 2^27. */
+/* A target behind the hider is in its shadow if the ray over its top meets the level of the hider's
+ * foot in the dark. Cells are within 2^23 either way, and their difference within 2^24; that far
+ * the range is within 2^40, and is held to 2^27. Tangents at one range differ by less than 2^63 /
+ * range, so cut by 2^12 and times the range the difference is below 2^51; a height is 2^30 in Q14.
+ */
 static bool is_below_shadow(const struct lm_patch_chip *chip, const struct lm_patch_scatterer *from,
                             const struct lm_patch_scatterer *at, const struct lm_patch_geometry *g)
 {
     const int32_t right_cells_q8 = lm_cells_q8_of_cells(at->line) - chip->shadow_across_cells_q8;
-    int32_t end = at->cell - from->cell;
-    if (!is_dark(chip, right_cells_q8, end)) {
-        return false;
-    }
-    do {
-        end++;
-    } while (is_dark(chip, right_cells_q8, end));
-    const int64_t end_m_q8 = chip->range_m_q8 + (int64_t)end * g->cell_m_q8;
-    return at->tangent_q38 <=
-           lm_target_view_tangent_q38(chip->foot_m_q10, (uint32_t)end_m_q8, &g->heights);
+    const int32_t beyond = at->cell - from->cell;
+    const uint32_t range_m_q8 = (uint32_t)fx_clamp_i64(
+        chip->range_m_q8 + (int64_t)beyond * g->cell_m_q8, 1, (int64_t)1 << 27);
+    const int64_t above_q38 =
+        at->tangent_q38 -
+        lm_target_view_tangent_q38(chip->slope.foot_m_q14 / 16, range_m_q8, &g->heights);
+    const int32_t rise_m_q14 =
+        (int32_t)fx_clamp_i64((above_q38 >> 12) * range_m_q8 >> 20, INT32_MIN, INT32_MAX);
+    return beyond > 0 && is_dark(chip, right_cells_q8,
+                                 lm_chip_slope_level_cells_q8(
+                                     &chip->slope, lm_cells_q8_of_cells(beyond), rise_m_q14));
 }
 
 bool lm_target_patch_mark_shaded(struct lm_target_patch *p, uint32_t number,
@@ -510,34 +563,78 @@ static struct span cells_under(const struct lm_chip_reach *reach,
                          fx_min_i32(middle + reach->beyond_end, (int32_t)g->cells)};
 }
 
-/* Darken the cells of a line that a chip's shadow reaches. */
-static void shade(const struct lm_target_patch *p, const struct lm_patch_chip *chip, uint32_t line,
-                  const struct lm_patch_geometry *g, int16_t *level_db_q8)
+/* Darken one cell by a part of its clutter. */
+static int16_t darkened_db_q8(int16_t level_db_q8, uint32_t dark)
 {
     const int32_t lit_q8 = fx_db_q8(LM_CHIP_SHADOW_ALL);
-    const struct lm_patch_scatterer *at = &p->scatterer[chip->scatterer];
-    const struct origin origin = {chip->shadow_across_cells_q8, at->along_cells_q8};
-    const int32_t right_cells_q8 = lm_cells_q8_of_cells((int32_t)line) - origin.across_cells_q8;
-    const struct span under = cells_under(&chip->patch.dark, at, &origin, line, g);
-    for (int32_t i = under.first; i < under.end; i++) {
-        const uint32_t dark = lm_chip_patch_shadow(&chip->patch, right_cells_q8,
-                                                   lm_cells_q8_of_cells(i) - origin.along_cells_q8);
-        level_db_q8[i] =
-            dark == LM_CHIP_SHADOW_ALL
-                ? LM_LEVEL_SHADOW
-                : fx_sat_i16(level_db_q8[i] + fx_db_q8(LM_CHIP_SHADOW_ALL - dark) - lit_q8);
+    return dark == LM_CHIP_SHADOW_ALL
+               ? LM_LEVEL_SHADOW
+               : fx_sat_i16(level_db_q8 + fx_db_q8(LM_CHIP_SHADOW_ALL - dark) - lit_q8);
+}
+
+/* Darken the cells of a line that a chip's shadow reaches. Before the origin the ground counts as
+ * level, for the target stands on it. Where a ray over the ground is beyond the shadow the rest is
+ * lit, or in the shadow of the ground. */
+static void shade(const struct lm_target_patch *p, const struct lm_patch_chip *chip, uint32_t line,
+                  const struct lm_patch_geometry *g, const int32_t *elevation_m_q14,
+                  int16_t *level_db_q8)
+{
+    const struct lm_chip_reach *dark = &chip->patch.dark;
+    const int32_t along_cells_q8 = chip->shadow_along_cells_q8;
+    const int32_t right_cells_q8 =
+        lm_cells_q8_of_cells((int32_t)line) - chip->shadow_across_cells_q8;
+    const int32_t aside = (int32_t)line - lm_cells_of_cells_q8(chip->shadow_across_cells_q8);
+    const int64_t first =
+        lm_cells_of_cells_q8(along_cells_q8) + (int64_t)fx_min_i32(dark->beyond, 0);
+    const int32_t end = (int32_t)(g->traced - g->overscan);
+    if (p->scatterer[chip->scatterer].is_hidden || aside < dark->right ||
+        aside >= dark->right_end || first >= end) {
+        return;
+    }
+    for (int32_t i = traced_cell(g, first); i < end; i++) {
+        const int32_t beyond_cells_q8 = lm_cells_q8_of_cells(i) - along_cells_q8;
+        const int32_t rise_m_q14 =
+            beyond_cells_q8 > 0 ? elevation_m_q14[i] - chip->slope.foot_m_q14 : 0;
+        const int64_t level_q8 =
+            lm_chip_slope_level_cells_q8(&chip->slope, beyond_cells_q8, rise_m_q14);
+        if (level_q8 >= lm_cells_q8_of_cells(dark->beyond_end)) {
+            return;
+        }
+        if (level_q8 >= lm_cells_q8_of_cells(dark->beyond)) {
+            level_db_q8[i] =
+                darkened_db_q8(level_db_q8[i], lm_chip_patch_shadow(&chip->patch, right_cells_q8,
+                                                                    (int32_t)level_q8));
+        }
     }
 }
 
 void lm_target_patch_shade(const struct lm_target_patch *p, uint32_t line,
-                           const struct lm_patch_geometry *g, int16_t *level_db_q8)
+                           const struct lm_patch_geometry *g, const int32_t *elevation_m_q14,
+                           int16_t *level_db_q8)
 {
     for (uint32_t left = p->on_line[line]; left != 0;) {
         const uint32_t target = take_next(&left);
         if (p->target[target].has_chip) {
-            shade(p, &p->chip[target], line, g, level_db_q8);
+            shade(p, &p->chip[target], line, g, elevation_m_q14, level_db_q8);
         }
     }
+}
+
+/* Cells that a chip is displayed nearer on a line, as the ground across is higher there than below
+ * its origin. Ground that rises by more than one in one is a step, and not what it stands on. */
+static int32_t nearer_cells_q8(const struct lm_patch_chip *chip,
+                               const struct lm_patch_scatterer *at, uint32_t line,
+                               const struct lm_patch_geometry *g, const int32_t *elevation_m_q14)
+{
+    const int32_t cell = traced_cell(g, at->cell);
+    if (!chip->slope.is_known || at->is_displaced || cell != at->cell) {
+        return 0;
+    }
+    /* A line is at most 2^11 cells away, of 2^16 m. */
+    const int64_t most_m_q14 = (int64_t)fx_abs_u32((int32_t)line - at->line) * g->cell_m_q8 << 6;
+    const int64_t rise_m_q14 = fx_clamp_i64(
+        (int64_t)elevation_m_q14[cell] - chip->slope.ground_m_q14, -most_m_q14, most_m_q14);
+    return in_cells(g, rise_m_q14 * g->lean_q16 >> 22);
 }
 
 /* Add one slice of a chip's smear to a line, unless it is more than `room` cells. Returns the
@@ -548,12 +645,14 @@ static uint32_t add_slice(const struct lm_patch_chip *chip, const struct lm_patc
 {
     const struct origin origin = {at->across_cells_q8 + slice->across_cells_q8,
                                   at->along_cells_q8 + slice->along_cells_q8};
+    const int64_t stretch_q16 = chip->slope.stretch_q16;
     const struct span under = cells_under(&chip->patch.lit, at, &origin, line, g);
     const uint32_t cells = (uint32_t)fx_max_i32(under.end - under.first, 0);
     const int32_t right_cells_q8 = lm_cells_q8_of_cells((int32_t)line) - origin.across_cells_q8;
     for (int32_t i = under.first; i < under.end && cells <= room; i++) {
+        const int64_t shown_cells_q8 = lm_cells_q8_of_cells(i) - origin.along_cells_q8;
         const int32_t rcs_dbsm_q8 = lm_chip_patch_rcs_dbsm_q8(
-            &chip->patch, right_cells_q8, lm_cells_q8_of_cells(i) - origin.along_cells_q8);
+            &chip->patch, right_cells_q8, (int32_t)(shown_cells_q8 * stretch_q16 >> 16));
         if (rcs_dbsm_q8 > LM_RCS_NONE_DBSM_Q8) {
             const int32_t chip_db_q8 = rcs_dbsm_q8 + slice->share_db_q8 - chip->area_dbm2_q8;
             level_db_q8[i] = fx_sat_i16(fx_db_q8_sum_vec(level_db_q8[i], chip_db_q8));
@@ -563,7 +662,8 @@ static uint32_t add_slice(const struct lm_patch_chip *chip, const struct lm_patc
 }
 
 uint32_t lm_target_patch_add_chips(const struct lm_target_patch *p, uint32_t line,
-                                   const struct lm_patch_geometry *g, int16_t *level_db_q8)
+                                   const struct lm_patch_geometry *g,
+                                   const int32_t *elevation_m_q14, int16_t *level_db_q8)
 {
     uint32_t room = LM_CHIP_CELLS_A_LINE, left_out = 0;
     for (uint32_t targets = p->on_line[line]; targets != 0;) {
@@ -573,7 +673,8 @@ uint32_t lm_target_patch_add_chips(const struct lm_target_patch *p, uint32_t lin
         const struct lm_smear *smear = &p->target[target].smear;
         const uint32_t slices = p->target[target].has_chip ? smear->slices : 0;
         for (uint32_t number = 0; number < slices; number++) {
-            const struct slice slice = slice_of(smear, number);
+            struct slice slice = slice_of(smear, number);
+            slice.along_cells_q8 -= nearer_cells_q8(chip, at, line, g, elevation_m_q14);
             const uint32_t cells = add_slice(chip, at, &slice, line, room, g, level_db_q8);
             left_out += cells > room ? cells : 0;
             room -= cells > room ? 0 : cells;

@@ -88,16 +88,21 @@ uint64_t lm_arc_m_q8(uint32_t range_m_q8, fx_bam_t width)
     return turns_q16 * FX_TWO_PI_Q26 >> 34;
 }
 
-int32_t lm_clutter_area_dbm2_q8(uint64_t width_m_q8, uint32_t cell_m_q8, uint32_t range_m_q8,
-                                uint32_t before_m_q8, const struct lm_target_heights *h)
+uint32_t lm_target_grazing_q24(uint32_t range_m_q8, uint32_t before_m_q8,
+                               const struct lm_target_heights *h)
 {
-    /* Grazing of the flat ground, as in the receiver's gain: g = h / s - s' / 2a, with s' the range
-     * of the cell before. The height is below 2^26 in Q10; times 2^22 it is below 2^48. */
+    /* As in the receiver's gain: g = h / s - s' / 2a, with s' the range of the cell before. The
+     * height is below 2^26 in Q10; times 2^22 it is below 2^48. */
     const int64_t above_m_q10 = (int64_t)h->antenna_m_q10 - h->reference_m_q10;
     const int64_t grazing_q24 = above_m_q10 * (1 << 22) / (int64_t)fx_max_u32(range_m_q8, 1) -
                                 ((int64_t)before_m_q8 * LM_CURVATURE_Q48 >> 32);
-    const uint64_t g_q24 =
-        (uint64_t)(grazing_q24 < GRAZING_MIN_Q24 ? GRAZING_MIN_Q24 : grazing_q24);
+    return (uint32_t)fx_clamp_i64(grazing_q24, GRAZING_MIN_Q24, UINT32_MAX);
+}
+
+int32_t lm_clutter_area_dbm2_q8(uint64_t width_m_q8, uint32_t cell_m_q8, uint32_t range_m_q8,
+                                uint32_t before_m_q8, const struct lm_target_heights *h)
+{
     return fx_db_q8_of_log2_q16(fx_log2_q16_u64(width_m_q8) + fx_log2_q16(cell_m_q8) +
-                                fx_log2_q16_u64(g_q24) - (8 + 8 + 24) * 65536);
+                                fx_log2_q16(lm_target_grazing_q24(range_m_q8, before_m_q8, h)) -
+                                (8 + 8 + 24) * 65536);
 }

@@ -1,5 +1,7 @@
 #include "reference/chip.h"
 
+#include "reference/reference.h"
+
 #include <math.h>
 #include <stdbool.h>
 
@@ -149,4 +151,16 @@ double ref_chip_cell_shadow(const struct ref_chip *c, double right_m, double bey
             shadow_at(c, right_m + step_m(i % STEPS, cell_m), beyond_m + step_m(i / STEPS, cell_m));
     }
     return sum / (STEPS * STEPS);
+}
+
+double ref_chip_level_m(double antenna_m, double range_m, double beyond_m, double rise_m)
+{
+    const double tangent = ref_tangent(antenna_m, range_m + beyond_m, rise_m);
+    double near_m = 1 - range_m, far_m = 2 * range_m;
+    for (int i = 0; i < 60; i++) {
+        const double middle_m = (near_m + far_m) / 2;
+        const bool is_above = ref_tangent(antenna_m, range_m + middle_m, 0) < tangent;
+        *(is_above ? &near_m : &far_m) = middle_m;
+    }
+    return (near_m + far_m) / 2;
 }

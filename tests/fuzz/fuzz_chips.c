@@ -106,15 +106,29 @@ static void draw_patch(struct world *w)
                                         .cell_m_q8 = w->cell_mm * 256 / 1000,
                                         .lines = LINES,
                                         .cells = CELLS,
+                                        .traced = CELLS,
+                                        .lean_q16 = 1 << 15,
                                         .heights = {3000 * 1024, 0},
                                         .wavelength_um = 31228,
                                         .across_mm_s = 200000,
                                         .dwell_ms = 4000};
+    /* Ground that rises and falls by up to 45 degrees, as the chip has it. */
+    static int32_t elevation_m_q14[CELLS];
     int16_t level_q8[LM_CELLS_ROOM] = {0};
+    for (uint32_t i = 1; i < CELLS; i++) {
+        elevation_m_q14[i] = elevation_m_q14[i - 1] +
+                             (int32_t)g.cell_m_q8 * (w->chip.level[0][i % LM_CHIP_SIDE] - 128) / 2;
+    }
     lm_target_patch_set(&w->points, &w->near, &g);
     for (uint32_t k = 0; k < LINES; k++) {
-        lm_target_patch_shade(&w->points, k, &g, level_q8);
-        lm_target_patch_add_chips(&w->points, k, &g, level_q8);
+        lm_target_patch_lean(&w->points, k, elevation_m_q14, &g);
+    }
+    for (uint32_t i = 0; i < w->points.scatterer_count; i++) {
+        lm_target_patch_mark_shaded(&w->points, i, &g);
+    }
+    for (uint32_t k = 0; k < LINES; k++) {
+        lm_target_patch_shade(&w->points, k, &g, elevation_m_q14, level_q8);
+        lm_target_patch_add_chips(&w->points, k, &g, elevation_m_q14, level_q8);
     }
     for (uint32_t i = CELLS; i < LM_CELLS_ROOM; i++) {
         FUZZ_ASSERT(level_q8[i] == 0);

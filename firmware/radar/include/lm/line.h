@@ -7,9 +7,10 @@
  *     detail                       -                            lm_line_trace
  *     shadow, slope, edges         lm_line_trace                lm_line_trace
  *     class gain, sea              lm_line_trace                lm_line_trace
+ *     shadows of targets           with the scatterers below    lm_target_patch_shade
  *     layover                      -                            lm_layover_run
  *     targets                      lm_line_add_targets          -
- *     chips of targets             with the scatterers above    lm_target_patch_shade, _add_chips
+ *     chips of targets             with the scatterers above    lm_target_patch_add_chips
  *     rain                         with the receiver below      lm_patch_rain_run
  *     receiver noise               with the receiver below      lm_patch_floor_run
  *     speckle                      behind the pulse, below      lm_grain_floor_run

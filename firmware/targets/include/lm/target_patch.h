@@ -3,8 +3,10 @@
  *
  * Order of the calls:
  * - for the patch: lm_target_patch_set;
+ * - for the lines that chips stand on: lm_target_patch_lean;
  * - for each scatterer, when terrain's hiding of chips is known: lm_target_patch_mark_shaded;
- * - for each line, before speckle and noise: lm_target_patch_shade, lm_target_patch_add_chips;
+ * - for each line, before layover: lm_target_patch_shade;
+ * - for each line, before speckle and noise: lm_target_patch_add_chips;
  * - for each line, when its horizon is known: lm_target_patch_mark_hidden;
  * - for each line, after speckle and noise: lm_target_patch_add_scatterers.
  *
@@ -27,6 +29,7 @@
 #define LM_TARGET_PATCH_H
 
 #include "lm/chip_patch.h"
+#include "lm/chip_slope.h"
 #include "lm/response.h"
 #include "lm/scan_line.h"
 #include "lm/smear.h"
@@ -83,8 +86,10 @@ struct lm_patch_chip {
     struct lm_chip_patch patch;
     uint32_t scatterer; /* index of the scatterer that has its position and whether it is hidden */
     int32_t shadow_across_cells_q8; /* of the true origin: Doppler does not displace a shadow */
+    int32_t shadow_along_cells_q8;  /* likewise, and layover moves it with the ground */
     int32_t area_dbm2_q8;           /* area of a clutter cell there */
-    int32_t range_m_q8, foot_m_q10; /* of the true origin, along the look; its elevation */
+    int32_t range_m_q8;             /* of the true origin, along the look */
+    struct lm_chip_slope slope;
 };
 
 /* Most cells of a line that chips are added to. It bounds the line's cost. */
@@ -121,10 +126,15 @@ void lm_target_patch_set(struct lm_target_patch *p, const struct lm_target_candi
 void lm_target_patch_mark_hidden(struct lm_target_patch *p, uint32_t line, const int32_t *horizon,
                                  uint32_t bits, uint32_t cells);
 
+/* Take the slope that chips stand on along line `line`, if they stand on this one. A chip whose
+ * line is not shown stands on level ground. `elevation_m_q14` is that of the ground in cell 0; the
+ * line has elevations from g->overscan cells before it on, g->traced in all. */
+void lm_target_patch_lean(struct lm_target_patch *p, uint32_t line, const int32_t *elevation_m_q14,
+                          const struct lm_patch_geometry *g);
+
 /* Mark scatterer `number` if it stands in the shadow of another target's chip, and no higher than
- * the ray above it: the one that meets level ground at the hider's foot where the shadow ends. A
- * chip that terrain hides shades nothing. True if a chip's shadow was looked at. Cost: for each
- * chip that is looked at 180 instructions, and 180 more for each cell of its shadow behind. */
+ * the ray above it. A chip that terrain hides shades nothing. True if a chip's shadow was looked
+ * at. Cost: for each chip that is looked at 200 instructions. */
 bool lm_target_patch_mark_shaded(struct lm_target_patch *p, uint32_t number,
                                  const struct lm_patch_geometry *g);
 
@@ -135,17 +145,23 @@ bool lm_target_patch_mark_shaded(struct lm_target_patch *p, uint32_t number,
 void lm_target_patch_add_scatterers(struct lm_target_patch *p, uint32_t line, int32_t least_db_q8,
                                     const struct lm_patch_geometry *g, int16_t *level_db_q8);
 
-/* Darken the ground of line `line` in the shadows of chips. Call it after layover, and before
- * speckle and noise. A hidden target has no shadow. Cost: 200 instructions for each cell under a
- * chip. */
+/* Darken the ground of line `line` in the shadows of chips, as far as it rises above the rays that
+ * pass over them, or falls below. Call it before layover, which moves dark ground like other
+ * ground, and before speckle and noise. A hidden target has no shadow. Elevations are as in
+ * lm_target_patch_lean, and levels lie likewise. Cost: 200 instructions for each cell in or about a
+ * shadow, 20 for each behind it as long as the ground falls as a ray does. */
 void lm_target_patch_shade(const struct lm_target_patch *p, uint32_t line,
-                           const struct lm_patch_geometry *g, int16_t *level_db_q8);
+                           const struct lm_patch_geometry *g, const int32_t *elevation_m_q14,
+                           int16_t *level_db_q8);
 
 /* Add the chips to the levels of line `line`, each slice of a mover's smear separately. Call it
- * after lm_target_patch_shade, and before speckle and noise: each pixel of a chip is the mean of
- * many scatterers, as clutter is. Returns how many cells were left out because the line had
+ * after layover, and before speckle and noise: each pixel of a chip is the mean of many scatterers,
+ * as clutter is. Where the ground leans away from the radar a chip is longer, and where it leans
+ * across it is sheared; of a displaced mover the ground across is not known. Elevations are as in
+ * lm_target_patch_lean. Returns how many cells were left out because the line had
  * LM_CHIP_CELLS_A_LINE. Cost: 250 instructions for each cell under a slice. */
 uint32_t lm_target_patch_add_chips(const struct lm_target_patch *p, uint32_t line,
-                                   const struct lm_patch_geometry *g, int16_t *level_db_q8);
+                                   const struct lm_patch_geometry *g,
+                                   const int32_t *elevation_m_q14, int16_t *level_db_q8);
 
 #endif

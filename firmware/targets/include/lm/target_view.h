@@ -47,6 +47,11 @@ int64_t lm_target_view_tangent_q38(int32_t top_m_q10, uint32_t range_m_q8,
 /* Length of an arc of `width` at a range of at most 2^26.6 (400 km). */
 uint64_t lm_arc_m_q8(uint32_t range_m_q8, fx_bam_t width);
 
+/* Tangent of grazing on flat ground at a range, at least 1/256 and held to 32 bits. `before_m_q8`
+ * is the range of the cell before this one. */
+uint32_t lm_target_grazing_q24(uint32_t range_m_q8, uint32_t before_m_q8,
+                               const struct lm_target_heights *h);
+
 /* Area of a clutter cell on flat ground, w ds g, as 10 log10 of square metres. A cross section less
  * this is the gamma that the cell would need. `before_m_q8` is the range of the cell before this
  * one; for the first cell it is range_m_q8 itself. g is at least 1/256. */

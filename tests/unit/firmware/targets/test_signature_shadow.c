@@ -45,6 +45,7 @@ static const struct lm_patch_geometry geometry = {.look = FX_BAM_90,
                                                   .cell_m_q8 = 256,
                                                   .lines = LINES,
                                                   .cells = CELLS,
+                                                  .traced = CELLS,
                                                   .heights = {6000 * 1024, 0},
                                                   .wavelength_um = X_BAND_UM,
                                                   .dwell_ms = 2000};
@@ -128,6 +129,7 @@ TEST_WITH(a_chip_in_the_shadow_of_another_is_not_drawn_and_throws_none, set_up,
         const struct spot here = {0, 0, 0};
         struct lm_target targets[2] = {target_with_signature(46, 11, 0),
                                        target_with_signature(46, 11, 0)};
+        static const int32_t elevation_m_q14[LM_CELLS_ROOM];
         int16_t level_q8[LM_CELLS_ROOM];
         put_at(&targets[0], &here);
         put_at(&targets[1], &spots[i]);
@@ -140,7 +142,7 @@ TEST_WITH(a_chip_in_the_shadow_of_another_is_not_drawn_and_throws_none, set_up,
                 level_q8[c] = -120 * 256;
             }
             f->points.target[0].has_chip = false; /* of the second alone */
-            lm_target_patch_add_chips(&f->points, k, &geometry, level_q8);
+            lm_target_patch_add_chips(&f->points, k, &geometry, elevation_m_q14, level_q8);
             for (uint32_t c = 0; c < CELLS; c++) {
                 drawn += level_q8[c] > -120 * 256;
             }

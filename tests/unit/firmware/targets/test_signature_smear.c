@@ -83,10 +83,12 @@ static void draw(struct fixture *f, const struct lm_target *t)
                                         .cell_m_q8 = 256,
                                         .lines = LINES,
                                         .cells = CELLS,
+                                        .traced = CELLS,
                                         .heights = heights,
                                         .wavelength_um = X_BAND_UM,
                                         .across_mm_s = (int32_t)flies_m_s * 1000,
                                         .dwell_ms = (uint32_t)(dwell_s * 1000)};
+    static const int32_t elevation_m_q14[LM_CELLS_ROOM];
     struct lm_target_candidates candidates;
     choose_chip(f, t, &candidates);
     lm_target_patch_set(&f->points, &candidates, &g);
@@ -95,7 +97,8 @@ static void draw(struct fixture *f, const struct lm_target *t)
         for (uint32_t i = 0; i < CELLS; i++) {
             level_q8[i] = NOTHING_Q8;
         }
-        assert_int_equal(lm_target_patch_add_chips(&f->points, k, &g, level_q8), 0);
+        assert_int_equal(lm_target_patch_add_chips(&f->points, k, &g, elevation_m_q14, level_q8),
+                         0);
         for (uint32_t i = 0; i < CELLS; i++) {
             f->found[k][i] = level_q8[i] > NOTHING_Q8 ? pow(10, level_q8[i] / 2560.0) : 0;
         }
