@@ -120,6 +120,37 @@ TEST(learned_chips_can_be_made_and_read_again)
                      0);
 }
 
+/* The cells before the response, two to a pixel: the bright middle lies where it lies in the chip,
+ * and cut 20 dB below the brightest each is ten times as bright, or white. */
+TEST(the_cells_of_a_learned_chip_can_be_seen_before_the_response)
+{
+    const char *b = support_build_dir();
+    assert_int_equal(support_run("%s/bin/landmass-netem simulate --model slicy --cells 64 --rays 1 "
+                                 "--training %s/whole/training.netem --azimuth 30 --raw "
+                                 "--out %s/raw",
+                                 b, folder, folder),
+                     0);
+    assert_int_equal(
+        support_run("cd %s/raw && for k in peak cut; do "
+                    "gdal_translate -q -of XYZ 030.00-$k.png $k.xyz; done && "
+                    "paste -d' ' peak.xyz cut.xyz | awk '{ n++; want = 10 * $3; "
+                    "white += $3 == 255; lit += $3 > 0; "
+                    "bad += $6 < 255 && ($6 > want + 5.5 || $6 < want - 5.5); "
+                    "bad += $6 == 255 && want < 249 } "
+                    "END { exit !(n == 64 * 64 && white > 0 && lit > 20 && bad == 0) }'",
+                    folder),
+        0);
+    assert_int_equal(
+        support_run("cd %s/raw && tr , ' ' < 030.00.csv | awk 'FILENAME == \"-\" "
+                    "{ for (i = 1; i <= NF; i++) { w = $i * $i; s += w; x += w * (i - 0.5); "
+                    "y += w * (FNR - 0.5) } next } "
+                    "{ w = $3 * $3; S += w; X += w * $1 / 2; Y += w * $2 / 2 } END { "
+                    "dx = x / s - X / S; dy = y / s - Y / S; "
+                    "exit !(s > 0 && dx * dx + dy * dy < 4) }' - peak.xyz",
+                    folder),
+        0);
+}
+
 /* The own law is given what `landmass-target render --csv` writes, so it fits that without error;
  * it once took power for amplitude. The null models are worse, the flat one by all of the variance.
  */
