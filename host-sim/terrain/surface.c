@@ -1,5 +1,6 @@
 #include "terrain/surface.h"
 
+#include "fit.h"
 #include "gis/gdal_start.h"
 #include "gis/plausible.h"
 #include "hs/error.h"
@@ -335,6 +336,8 @@ void terrain_set_cell(struct terrain *t, uint8_t shift0)
         layer->lattice = resample_lattice_of(&layer->mosaic.georef, shift0);
         layer->blur_x = fmax(0.0, cell / layer->pixel_longitude_bam - 1.0);
         layer->blur_y = fmax(0.0, cell / layer->pixel_latitude_bam - 1.0);
+        terrain_fit_set(&layer->fit, cell / layer->pixel_longitude_bam,
+                        cell / layer->pixel_latitude_bam);
     }
 }
 
@@ -430,6 +433,74 @@ static double interpolate(const struct terrain_layer *layer, const struct patch 
     return sum / weights;
 }
 
+/* Pixels along one axis that a fitted post depends on, with their weights. */
+struct fit_axis {
+    int first, count;
+    double weight[16];
+};
+
+static void set_fit_axis(struct fit_axis *a, const struct terrain_fit *fit, double cell,
+                         double centre)
+{
+    const double reach = terrain_fit_reach(cell);
+    a->first = (int)ceil(centre - reach);
+    a->count = (int)floor(centre + reach) - a->first + 1;
+    for (int i = 0; i < a->count; i++) {
+        a->weight[i] = terrain_fit_weight(fit, cell, a->first + i - centre);
+    }
+}
+
+/* A post fitted to the surface, no higher and no lower than the pixels that are less than a cell
+ * from where it is drawn: flat water beside a cliff stays flat. NAN where a pixel is missing. */
+static double fitted(const struct terrain_layer *layer, const struct patch *p, double x, double y)
+{
+    const struct terrain_fit *fit = &layer->fit;
+    const struct resample_window *w = &p->window;
+    struct fit_axis column, row;
+    set_fit_axis(&column, fit, fit->cell_x, x - 0.5);
+    set_fit_axis(&row, fit, fit->cell_y, y - 0.5);
+    if (column.first < w->x || column.first + column.count > w->x + w->width || row.first < w->y ||
+        row.first + row.count > w->y + w->height) {
+        return (double)NAN;
+    }
+    double sum = 0.0, low = HUGE_VAL, high = -HUGE_VAL;
+    for (int r = 0; r < row.count; r++) {
+        const float *metres = p->metres + (size_t)(row.first + r - w->y) * (size_t)w->width +
+                              (size_t)(column.first - w->x);
+        const bool is_near_row = fabs(row.first + r + 0.5 - y) < 1.0 + fit->cell_y;
+        for (int c = 0; c < column.count; c++) {
+            const double here = (double)metres[c];
+            sum += row.weight[r] * column.weight[c] * here;
+            if (is_near_row && fabs(column.first + c + 0.5 - x) < 1.0 + fit->cell_x) {
+                low = here < low ? here : low;
+                high = here > high ? here : high;
+            }
+        }
+    }
+    return isnan(sum) ? sum : fmin(fmax(sum, low), high);
+}
+
+/* True where the surface is flat: the pixels that a post lies between are equal. */
+static bool is_flat(const struct patch *p, double x, double y)
+{
+    const struct resample_window *w = &p->window;
+    const int column = (int)floor(x - 0.5) - w->x, row = (int)floor(y - 0.5) - w->y;
+    if (column < 0 || column + 1 >= w->width || row < 0 || row + 1 >= w->height) {
+        return false;
+    }
+    const float *m = p->metres + (size_t)row * (size_t)w->width + (size_t)column;
+    return m[0] == m[1] && m[0] == m[w->width] && m[0] == m[w->width + 1];
+}
+
+/* Flat ground stays as it is, so that the sea ends where it did. */
+static double height_of_post(const struct terrain_layer *layer, const struct patch *p, double x,
+                             double y)
+{
+    const double metres =
+        layer->fit.is_on && !is_flat(p, x, y) ? fitted(layer, p, x, y) : (double)NAN;
+    return isnan(metres) ? interpolate(layer, p, x, y) : metres;
+}
+
 /* What is known of a tile's posts so far. */
 struct work {
     double x[POSTS], y[POSTS]; /* in the layer at hand */
@@ -451,7 +522,7 @@ static void sample_patch(const struct terrain_layer *layer, const struct patch *
             const int i = r * LM_TILE_POSTS + c;
             const enum terrain_state state = state_at(p, w->x[i], w->y[i]);
             if (state > w->state[i] && state >= TERRAIN_FILLED) {
-                w->metres[i] = interpolate(layer, p, w->x[i], w->y[i]);
+                w->metres[i] = height_of_post(layer, p, w->x[i], w->y[i]);
                 w->state[i] = (uint8_t)state;
             }
         }
@@ -469,7 +540,9 @@ static struct resample_window block_window(const struct terrain_layer *layer, co
             y[count++] = w->y[r * LM_TILE_POSTS + c];
         }
     }
-    const int margin = (int)ceil(fmax(layer->blur_x, layer->blur_y) / 2) + 2;
+    const double cell = fmax(layer->fit.cell_x, layer->fit.cell_y);
+    const int margin = layer->fit.is_on ? (int)ceil(terrain_fit_reach(cell)) + 1
+                                        : (int)ceil(fmax(layer->blur_x, layer->blur_y) / 2) + 2;
     return resample_window_of(&layer->mosaic.georef, count, x, y, margin);
 }
 

@@ -11,6 +11,15 @@
 #include "lm/db.h"
 #include "terrain/voids.h"
 
+/* How posts are fitted to a model whose pixels are hardly larger than the image's cells
+ * (terrain/fit.h). */
+enum { TERRAIN_FIT_CELLS = 5, TERRAIN_FIT_PARTS = 4 };
+struct terrain_fit {
+    bool is_on;
+    double cell_x, cell_y; /* the image's cell, in pixels: at most 1 */
+    double tap[2 * TERRAIN_FIT_CELLS * TERRAIN_FIT_PARTS - 1]; /* in steps of 1/4 cell */
+};
+
 /* Models on one grid. */
 struct terrain_layer {
     struct terrain_mosaic mosaic;
@@ -19,6 +28,7 @@ struct terrain_layer {
     struct image_area area;
     double pixel_latitude_bam, pixel_longitude_bam;
     double blur_x, blur_y; /* pixels over which the bilinear surface is averaged; 0: not at all */
+    struct terrain_fit fit;
 };
 
 struct terrain_options {
@@ -44,9 +54,9 @@ int terrain_open(struct terrain *t, const struct hs_list *paths,
                  const struct terrain_options *options);
 void terrain_close(struct terrain *t);
 
-/* Say how large the image's finest cells are. Posts are bilinear where a model is coarser than
- * that, and means of the bilinear surface over a cell less a pixel where it is finer. Call once
- * before terrain_posts. */
+/* Say how large the image's finest cells are. Posts are fitted to the model's bilinear surface
+ * where its pixels are up to four cells long, samples of it where they are longer, and means of it
+ * over a cell less a pixel where they are shorter. Call once before terrain_posts. */
 void terrain_set_cell(struct terrain *t, uint8_t shift0);
 
 struct terrain_posts {
