@@ -1,6 +1,7 @@
 #include "lm/line.h"
 
 #include "fx/mem.h"
+#include "lm/crests.h"
 #include "lm/level.h"
 
 lm_horizon_q40_t lm_line_trace(struct lm_line *line, struct lm_tile_cache *tiles,
@@ -11,6 +12,9 @@ lm_horizon_q40_t lm_line_trace(struct lm_line *line, struct lm_tile_cache *tiles
     lm_scan_line_run(&line->ground, tiles, setup->lod, setup->blend, path, cells);
     if (setup->detail) {
         lm_detail_patch_draw(setup->detail, setup->number, &line->ground, cells);
+    }
+    if (setup->has_crests) {
+        lm_crests_raise(setup->grid, &line->ground, line->lit.scratch);
     }
     horizon = lm_illuminate(setup->grid, setup->class_lut, setup->class_gain, &line->ground,
                             horizon, &line->lit);

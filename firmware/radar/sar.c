@@ -6,6 +6,7 @@
 #include "fx/sat.h"
 #include "fx/trig.h"
 #include "lm/const.h"
+#include "lm/crests.h"
 #include "lm/units.h"
 #include "lm/weather.h"
 
@@ -212,6 +213,7 @@ static void set_grid(struct lm_sar *s, const struct lm_db *db, int32_t reference
     lm_ground_patch_set(&s->ground, c->centre, c->look_azimuth, &extent);
     s->lod = lm_scan_lod(db, c->cell_mm);
     lm_scan_blend_set(&s->blend, db, c->cell_mm);
+    s->has_crests = lm_crests_are_wanted(db, s->lod, s->blend.is_on, c->cell_mm);
     lm_range_grid_set(&s->grid, &s->radar->illumination, near_m_q8 + cell_m_q8 / 2, cell_m_q8,
                       s->traced, lm_m_q10_of_m_q6(c->height_m_q6), reference_m_q10);
     lm_sea_set_cells(&s->sea, &s->grid, near_m_q8 + cell_m_q8 / 2);
@@ -542,6 +544,7 @@ static void trace_line(struct lm_sar *s, struct lm_tile_cache *tiles, uint32_t n
                                         .sea = &s->sea,
                                         .blend = &blend,
                                         .lod = s->lod,
+                                        .has_crests = s->has_crests,
                                         .detail = has_detail ? &s->detail : NULL,
                                         .number = number};
     struct lm_ground_path path;

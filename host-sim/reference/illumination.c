@@ -101,6 +101,23 @@ static double leading_edge_db(const struct ref_bin *before, const struct ref_bin
                                           : 0;
 }
 
+void ref_raise_crests(struct ref_bin *bins, size_t count, const struct ref_view *view)
+{
+    const size_t first = ref_first_shown(bins, count, view);
+    double before_m = first < count ? bins[first].elevation_m : 0;
+    for (size_t i = first + 1; i + 2 < count; i++) {
+        const double here_m = bins[i].elevation_m, next_m = bins[i + 1].elevation_m;
+        const double fall_m = -ref_tangent(view->antenna_m, bins[i].range_m, here_m) * view->cell_m;
+        const double from_near_m = here_m - before_m + fall_m;
+        const double from_far_m = next_m - bins[i + 2].elevation_m - fall_m;
+        const double rise_m = next_m - here_m + fall_m;
+        const double bulge_m =
+            fmin((from_near_m + from_far_m) / 16, fmin(from_near_m, from_far_m) / 4);
+        bins[i].elevation_m += bulge_m > fabs(rise_m) / 2 ? rise_m / 2 + bulge_m : 0;
+        before_m = here_m;
+    }
+}
+
 void ref_illuminate(struct ref_bin *bins, size_t count, const struct ref_view *view,
                     const struct ref_params *params, double horizon)
 {

@@ -194,6 +194,11 @@ static void sar_line(const struct ref_picture *picture, const struct ref_db *db,
     }
     struct ref_bin *const bins = ref_picture_bin(picture, line, first);
     const size_t count = (size_t)(end - first);
+    const double map_m = ref_db_cell_m(db, 0);
+    if (ref_db_level_for(db, sar->cell_m) == 0 && sar->cell_m >= 24 &&
+        sar->cell_m >= 2 * map_m / 3) {
+        ref_raise_crests(bins, count, &picture->view);
+    }
     ref_illuminate(
         bins, count, &picture->view, params,
         ref_behind_foreground(bins, count, &picture->view, picture->start_horizons[line]));

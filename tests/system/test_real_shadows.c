@@ -330,25 +330,27 @@ static void fill_with_hills(GDALDatasetH d, struct real_place antenna)
     free(row_m);
 }
 
-/* Over the mountains the widest two patches, in cells of 40 m, have an overlap of 0.928 and 0.906
- * by pixels of 20 m. What is missing lies within a cell of the shadows' borders, and these shadows
- * are all borders. Three things take their share:
- * - cells: the viewshed's own answer, asked in the middles of these cells, has no more than 0.961
- *   and 0.949. Cell by cell with that answer the patches have 0.937 and 0.914;
- * - posts of the image 76 m apart for terrain of 92 x 66 m: cell by cell 0.958 and 0.941 with posts
- *   38 m apart;
- * - the rest, which was not taken apart: the horizon is known at each 40 m, and what stands higher
- *   between two cells hides nothing.
- * The first is the comparison's, the second the user's choice of the image's cells. With parallel
- * lines the widest two have an overlap of 0.80 and 0.88 over the hills, and of 0.75 and 0.84 over
- * the mountains. */
+/* Over the mountains the widest two patches, in cells of 40 m, have an overlap of 0.947 and 0.929
+ * cell by cell, with posts 76 m apart for terrain of 92 x 66 m; with posts 38 m apart 0.967 and
+ * 0.953. What they had before shows where it was lost, at 12 km:
+ *
+ *     posts 76 m apart, samples of the terrain                        0.914
+ *     the same, fitted (host-sim/terrain/fit.h)                       0.929
+ *     posts 38 m apart, samples                                       0.941
+ *     the same, fitted                                                0.946
+ *     and with the crests between cells (EQUATIONS.md)                0.953
+ *
+ * Fixed point loses nothing: the same law in double precision has the same figures. Pixel by pixel
+ * of 20 m the viewshed's own answer, asked in the middles of these cells, has no more than
+ * 0.961 and 0.949. With parallel lines the widest two have an overlap of 0.80 and 0.88 over the
+ * hills, and of 0.75 and 0.84 over the mountains. */
 static const struct {
     double range_m, height_m, side_m, least_of_hills, least_of_mountains, least_of_fine_mountains;
 } views[] = {
-    {10000, 2000, 2560, 0.95, 0.95, 0.97},  {15000, 2500, 5120, 0.95, 0.95, 0.97},
-    {20000, 3000, 5120, 0.95, 0.95, 0.97},  {30000, 4000, 5120, 0.95, 0.95, 0.97},
-    {60000, 7000, 5120, 0.95, 0.95, 0.97},  {20000, 3000, 10240, 0.95, 0.93, 0.95},
-    {12000, 2500, 10240, 0.95, 0.91, 0.94},
+    {10000, 2000, 2560, 0.95, 0.95, 0.97},   {15000, 2500, 5120, 0.95, 0.95, 0.97},
+    {20000, 3000, 5120, 0.95, 0.95, 0.97},   {30000, 4000, 5120, 0.95, 0.95, 0.97},
+    {60000, 7000, 5120, 0.95, 0.95, 0.97},   {20000, 3000, 10240, 0.95, 0.94, 0.96},
+    {12000, 2500, 10240, 0.95, 0.925, 0.95},
 };
 
 TEST(shadows_of_hills_fall_where_gdal_has_them)

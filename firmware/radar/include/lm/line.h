@@ -5,6 +5,7 @@
  *     foreground                   lm_foreground_horizon        lm_foreground_horizon
  *     tiles to cells               lm_line_trace                lm_line_trace
  *     detail                       -                            lm_line_trace
+ *     crests between cells         -                            lm_line_trace
  *     shadow, slope, edges         lm_line_trace                lm_line_trace
  *     class gain, sea              lm_line_trace                lm_line_trace
  *     shadows of targets           with the scatterers below    lm_target_patch_shade
@@ -58,6 +59,7 @@ struct lm_line_setup {
     const struct lm_sea *sea;
     const struct lm_scan_blend *blend;    /* for the cells of the grid; NULL: off */
     uint8_t lod;                          /* LOD that the map is read from */
+    bool has_crests;                      /* those between cells count: lm/crests.h */
     const struct lm_detail_patch *detail; /* drawn into the cells; NULL: none */
     uint32_t number;                      /* of the line in the patch that has the detail */
 };

@@ -122,7 +122,8 @@ struct lm_sar {
     struct lm_ground_patch foreground_ground; /* terrain before them */
     struct lm_range_grid grid;
     struct lm_foreground foreground;
-    uint8_t lod; /* LOD that the patch is read from */
+    uint8_t lod;     /* LOD that the patch is read from */
+    bool has_crests; /* between its cells */
     struct lm_scan_blend blend;
     struct lm_class_lut class_lut;
     struct lm_class_gain class_gain;

@@ -243,6 +243,9 @@ double ref_behind_foreground(const struct ref_bin *bins, size_t count, const str
 /* Largest t of the bins (range, elevation and height are read), -INFINITY for none. */
 double ref_highest_tangent(const struct ref_bin *bins, size_t count, double antenna_m);
 
+/* Raise elevations to the crests between cells: EQUATIONS.md, "Crests between cells". */
+void ref_raise_crests(struct ref_bin *bins, size_t count, const struct ref_view *view);
+
 /* Fill the aspect fields from range and scan_line fields, near to far, starting below `horizon`.
  * The first bin shown enters nothing and follows no water; a bin without data is ground of -80
  * dB. */

@@ -310,6 +310,29 @@ TEST(patches_agree_with_the_reference)
     assert_true(foregrounds->beyond_1_grey * 80 <= foregrounds->pixels);
 }
 
+/* Ridges some 200 m apart that lie across most lines: their tops fall between cells. */
+static double ridges_elevation_m(void *ctx, const struct tiny_place *p)
+{
+    (void)ctx;
+    return 600 + 14 * sin(p->north_m / 35 + p->east_m / 80) + 80 * sin(p->east_m / 900);
+}
+
+/* Cells of 30 and 40 m over a map of 38 m: the crests between them count. */
+TEST(patches_of_long_cells_agree_with_the_reference)
+{
+    struct patch_scores scores = {0};
+    struct world *w = make_world_over(ridges_elevation_m, 12, 8, 46, 11);
+    score_patch(w, 0, 40, 24000, 3000, &scores);
+    score_patch(w, 160, 30, 20000, 2000, &scores);
+    score_patch(w, 250, 40, 20000, 1500, &scores);
+    free_world(w);
+    report("patches of long cells, aspect to tone on the same ground", &scores.stage);
+    report("patches of long cells, whole", &scores.whole);
+    judge_stages(&scores.stage);
+    assert_true(scores.whole.beyond_half_db * 200 <= scores.whole.pixels);
+    assert_true(scores.whole.beyond_1_grey * 150 <= scores.whole.pixels);
+}
+
 /* The same through rain, whose edge runs through each picture. */
 TEST(patches_in_rain_agree_with_the_reference)
 {
