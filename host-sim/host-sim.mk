@@ -5,7 +5,7 @@ $(call host_library, gis,          lib,                                         
 $(call host_library, image,        lib fixed firmware,                                  liblz4)
 $(call host_library, radar,        lib fixed firmware)
 $(call host_library, trust,        lib fixed firmware,                                  libcrypto)
-$(call host_library, classify,     gis lib,                                             openblas)
+$(call host_library, classify,     gis lib,                                             openblas -lpthread)
 $(call host_library, resample,     image gis lib fixed firmware)
 $(call host_library, terrain,      resample image gis lib fixed firmware)
 $(call host_library, reflectivity, lib)
@@ -52,7 +52,7 @@ LIB_reference := $(call host_archives,reference)
 LIB_tables    := $(call host_archives,tables)
 
 # Loops over pixels and rays that are worth vectorising.
-VECTOR_LOOPS := classify/mlp_apply reflectivity/reflect reflectivity/place \
+VECTOR_LOOPS := classify/mlp_apply reflectivity/reflect reflectivity/place image/codes image/ground \
     $(addprefix tracer/,first_bounce projection ray_angles scene trace_tile)
 $(VECTOR_LOOPS:%=$(O)/host-sim/%.o): EXTRA_CFLAGS := -O3 -fno-math-errno -fno-trapping-math
 

@@ -7,6 +7,7 @@
 
 #include <cblas.h>
 #include <math.h>
+#include <pthread.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -190,30 +191,72 @@ static void shape_member(struct db_mlp *mlp, const struct task *t)
     }
 }
 
-static int train_member(const struct task *t, int m, struct db_train_report *report)
+/* A member on its way. Which regions it learns from is chosen before, one member after the other;
+ * training waits for no other member. */
+struct pupil {
+    const struct task *task;
+    struct db_mlp *net;
+    struct db_train_options train;
+    struct part_data training, validation; /* owned */
+    struct db_train_report *report;
+    pthread_t thread;
+    bool has_thread;
+    int status;
+};
+
+static void pupil_free(struct pupil *p)
 {
-    struct db_mlp *mlp = &t->net->members[m];
-    struct db_train_options train = t->options->train;
-    struct part_data training, validation = {0};
-    train.seed += (uint64_t)m;
-    shape_member(mlp, t);
-    if (part_gather(&training, t->samples, t->net, t->output_of_class, DB_PART_TRAIN) != 0) {
-        return hs_error("training", "lower --per-class", "out of memory");
+    part_free(&p->validation);
+    part_free(&p->training);
+}
+
+static int pupil_init(struct pupil *p, const struct task *t, int m, struct db_train_report *report)
+{
+    *p = (struct pupil){.task = t,
+                        .net = &t->net->members[m],
+                        .train = t->options->train,
+                        .report = report,
+                        .status = -1};
+    p->train.seed += (uint64_t)m;
+    shape_member(p->net, t);
+    return part_gather(&p->training, t->samples, t->net, t->output_of_class, DB_PART_TRAIN) != 0 ||
+                   part_gather(&p->validation, t->samples, t->net, t->output_of_class,
+                               DB_PART_VALIDATE) != 0 ||
+                   db_mlp_init(p->net, p->train.seed) != 0
+               ? -1
+               : 0;
+}
+
+static void *teach(void *pupil)
+{
+    struct pupil *p = pupil;
+    const double *priors = p->task->priors;
+    const struct db_train_data a = {p->training.inputs, p->training.targets, p->training.count,
+                                    priors};
+    const struct db_train_data b = {p->validation.inputs, p->validation.targets,
+                                    p->validation.count, priors};
+    p->status = db_mlp_train(p->net, &p->train, &a, &b, p->report);
+    return NULL;
+}
+
+/* Side by side; a thread that is refused is done without. The first, which is this thread's, shows
+ * how far it is. */
+static int teach_all(struct pupil *pupils, int count)
+{
+    int status = 0;
+    for (int i = 1; i < count; i++) {
+        pupils[i].train.is_quiet = true;
+        pupils[i].has_thread = pthread_create(&pupils[i].thread, NULL, teach, &pupils[i]) == 0;
     }
-    int result = -1;
-    if (part_gather(&validation, t->samples, t->net, t->output_of_class, DB_PART_VALIDATE) != 0 ||
-        db_mlp_init(mlp, train.seed) != 0) {
-        hs_error("training", "lower --per-class", "out of memory");
-    } else {
-        const struct db_train_data a = {training.inputs, training.targets, training.count,
-                                        t->priors};
-        const struct db_train_data b = {validation.inputs, validation.targets, validation.count,
-                                        t->priors};
-        result = db_mlp_train(mlp, &train, &a, &b, report);
+    for (int i = 0; i < count; i++) {
+        if (pupils[i].has_thread) {
+            pthread_join(pupils[i].thread, NULL);
+        } else {
+            teach(&pupils[i]);
+        }
+        status |= pupils[i].status;
     }
-    part_free(&validation);
-    part_free(&training);
-    return result;
+    return status;
 }
 
 static void take_back(struct db_samples *s)
@@ -283,6 +326,31 @@ static int thin(struct task *t)
     return 0;
 }
 
+/* So many members at a time: as many copies of the samples are in memory. */
+enum { CLASS_SIZE = 4 };
+
+static int train_members(struct task *t, int first, int count, struct db_train_report *reports)
+{
+    struct pupil pupils[CLASS_SIZE] = {{0}};
+    int status = 0;
+    for (int i = 0; i < count && status == 0; i++) {
+        const int m = first + i;
+        if (set_aside(t, m) != 0) {
+            status = -1;
+        } else if (pupil_init(&pupils[i], t, m, &reports[m]) != 0) {
+            status = hs_error("training", "lower --per-class", "out of memory");
+        }
+        t->net->member_count = m + 1;
+    }
+    if (status == 0 && teach_all(pupils, count) != 0) {
+        status = hs_error("training", "lower --per-class or --hidden", "out of memory");
+    }
+    for (int i = 0; i < count; i++) {
+        pupil_free(&pupils[i]);
+    }
+    return status;
+}
+
 static int learn(struct task *t, struct db_train_report *reports)
 {
     const struct db_learn_options *o = t->options;
@@ -293,11 +361,11 @@ static int learn(struct task *t, struct db_train_report *reports)
     if (o->thin > 0 && thin(t) != 0) {
         return -1;
     }
-    for (int m = 0; m < o->members; m++) {
-        if (set_aside(t, m) != 0 || train_member(t, m, &reports[m]) != 0) {
+    for (int m = 0; m < o->members; m += CLASS_SIZE) {
+        const int left = o->members - m;
+        if (train_members(t, m, left < CLASS_SIZE ? left : CLASS_SIZE, reports) != 0) {
             return -1;
         }
-        t->net->member_count = m + 1;
     }
     take_back(t->samples);
     return 0;

@@ -1,6 +1,5 @@
 #include "classify/mlp_train.h"
 
-#include "hs/error.h"
 #include "hs/progress.h"
 #include "hs/rng.h"
 
@@ -480,10 +479,12 @@ int db_mlp_train(struct db_mlp *net, const struct db_train_options *options,
                         .report = report};
     if (trainer_init(&t) != 0) {
         trainer_free(&t);
-        return hs_error("training", "lower --per-class or --hidden", "out of memory");
+        return -1;
     }
-    struct hs_progress progress;
-    hs_progress_begin(&progress, "training", (uint64_t)options->epochs);
+    struct hs_progress progress = {0}; /* which shows nothing */
+    if (!options->is_quiet) {
+        hs_progress_begin(&progress, "training", (uint64_t)options->epochs);
+    }
     for (bool over = false; !over && report->epoch_count < options->epochs;) {
         struct db_epoch *epoch = &report->epochs[report->epoch_count++];
         run_epoch(&t, epoch);

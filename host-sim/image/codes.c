@@ -19,11 +19,12 @@ double image_gamma_db(uint8_t code)
 
 uint8_t image_height_code(const uint16_t table_dm[16], double height_dm)
 {
+    double least = fabs(table_dm[0] - height_dm);
     int best = 0;
-    for (int i = 1; i < 16; i++) {
-        if (fabs(table_dm[i] - height_dm) < fabs(table_dm[best] - height_dm)) {
-            best = i;
-        }
+    for (int i = 1; i < 16 && least > 0; i++) { /* most ground has no height, which comes first */
+        const double apart = fabs(table_dm[i] - height_dm);
+        best = apart < least ? i : best;
+        least = apart < least ? apart : least;
     }
     return (uint8_t)best;
 }

@@ -22,6 +22,7 @@ struct verify {
     struct image_verify_counts *counts;
     uint32_t *entries;    /* those that have a record, by its place */
     uint32_t entry_count; /* of them */
+    struct rung *spare;   /* owned: a list of those that are used again */
 };
 
 /* ---- sections ---- */
@@ -495,6 +496,7 @@ static void check_border(struct verify *v, uint32_t number, const struct lm_tile
 
 /* A tile of the pyramid, as it is made from those below it. */
 struct rung {
+    struct rung *next;   /* of the spare ones */
     struct lm_tile tile; /* a copy: the reader keeps only so many */
     uint32_t number;     /* of its entry */
     struct image_ground ground;
@@ -553,6 +555,35 @@ static bool cells_fit(const struct rung *made, const struct lm_tile *encoded, in
     return true;
 }
 
+/* They are large: the system would take and give their memory for each tile. */
+static struct rung *rung_new(struct verify *v)
+{
+    struct rung *made = v->spare;
+    if (!made) {
+        return malloc(sizeof *made);
+    }
+    v->spare = made->next;
+    return made;
+}
+
+/* `made` may be NULL. */
+static void rung_put_back(struct verify *v, struct rung *made)
+{
+    if (made) {
+        made->next = v->spare;
+        v->spare = made;
+    }
+}
+
+static void free_spare(struct verify *v)
+{
+    while (v->spare) {
+        struct rung *next = v->spare->next;
+        free(v->spare);
+        v->spare = next;
+    }
+}
+
 static int climb(struct verify *v, int level, uint32_t row, uint32_t column, struct rung **out);
 
 /* Make a tile again from the four below it, and compare. */
@@ -601,13 +632,13 @@ static int climb_to(struct verify *v, struct rung *made)
         result = check_below(v, made, below);
     }
     for (int i = 0; i < 4; i++) {
-        free(below[i]);
+        rung_put_back(v, below[i]);
     }
     return result;
 }
 
-/* Check a tile and all below it. *out is the caller's to free, NULL without a sound tile. Returns
- * 0, or -1 without memory. */
+/* Check a tile and all below it. *out is the caller's to put back, NULL without a sound tile.
+ * Returns 0, or -1 without memory. */
 static int climb(struct verify *v, int level, uint32_t row, uint32_t column, struct rung **out)
 {
     const struct lm_tile *t = find_tile(v->image, (uint8_t)level, row, column);
@@ -615,7 +646,7 @@ static int climb(struct verify *v, int level, uint32_t row, uint32_t column, str
     if (!t || lm_tile_check(t, (uint8_t)level, row, column) != LM_OK) {
         return 0;
     }
-    struct rung *made = malloc(sizeof *made);
+    struct rung *made = rung_new(v);
     if (!made) {
         return -1;
     }
@@ -636,8 +667,9 @@ static void check_levels(struct verify *v)
             image_find(v->findings, image_record_offset(v->image, v->entries[i]),
                        "not enough memory to check the levels below it");
         }
-        free(top);
+        rung_put_back(v, top);
     }
+    free_spare(v);
 }
 
 static void check_parent(struct verify *v, uint32_t number, const struct lm_tile *t)

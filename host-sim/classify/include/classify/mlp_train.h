@@ -6,6 +6,8 @@
 
 #include "classify/mlp.h"
 
+#include <stdbool.h>
+
 enum { DB_EPOCHS_MAX = 10000, DB_EVENTS_MAX = 64 };
 
 struct db_train_options {
@@ -20,6 +22,7 @@ struct db_train_options {
     int patience;    /* epochs without progress that make a plateau */
     int redraws;     /* how often the weights may be drawn anew, >= 0 */
     uint64_t seed;
+    bool is_quiet; /* shows no progress: other networks are trained at the same time */
 };
 
 /* Decay for a network of so many weights and so many exemplars, >= 1. Up to 0.3 weights for each
@@ -77,8 +80,9 @@ struct db_train_report {
  *
  * What is judged and kept is the mean of the weights over an epoch.
  *
- * The same data, options and seed give the same weights on the same machine. Returns 0, or -1 out
- * of memory with the error reported. `report` is to be freed either way. */
+ * The same data, options and seed give the same weights on the same machine, also where several
+ * networks are trained at the same time. Returns 0, or -1 out of memory. `report` is to be freed
+ * either way. */
 int db_mlp_train(struct db_mlp *net, const struct db_train_options *options,
                  const struct db_train_data *training, const struct db_train_data *validation,
                  struct db_train_report *report);
