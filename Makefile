@@ -5,6 +5,7 @@ O     := build/$(BOARD)
 include bsp/$(BOARD)/board.mk
 
 OPT  ?= -O2 -g
+CORES := $(shell nproc)
 CLANG ?= clang-19
 PKG_CONFIG ?= pkg-config
 pkgs  = $(shell $(PKG_CONFIG) --$(1) $(2) 2>/dev/null)
@@ -47,12 +48,20 @@ world: deps deps-world ## Make a world in shards on this machine: WORLD_OPTIONS,
 
 all: $(PROGRAMS) ## Build every program, without running anything
 
-run: deps ## Build, make the database of the built-in scene, fly over it, leave pictures
-	@$(MAKE) --no-print-directory all
+# How long a target takes has a goal (tests/figures/goals.txt), and is kept.
+begins = mkdir -p build && date +%s >build/$(1).began
+lasted = echo "$$(($$(date +%s) - $$(cat build/$(1).began))) s $(2)" | python3 -B tests/figures/figures.py --keep $(1)
+RUN_PROGRAMS := $(addprefix $(O)/bin/landmass-,db nav scene sim target)
+run: deps ## Build what it needs, make the database of the built-in scene, fly over it, leave pictures
+	@$(call begins,run)
+	@$(MAKE) --no-print-directory -j$(CORES) $(RUN_PROGRAMS)
 	@sh host-sim/run/run.sh $(O)
+	@$(call lasted,run,from the packages to the pictures)
 
 check: deps ## Build and run every test; ends in "N passed, N failed, N skipped"
+	@$(call begins,check)
 	@$(MAKE) --no-print-directory -j2 check-built
+	@$(call lasted,check,from the packages to the sum)
 
 # The program test_NAME, or else all that have NAME in folder or name.
 TESTS_named = $(strip $(or $(filter %/$(NAME) %/test_$(NAME),$(TESTS)), \
@@ -80,8 +89,8 @@ check-clang: deps ## Unit tests and golden pictures once more, built by CLANG (c
 check-panel: deps ## Run the panel on real kernel interfaces: a Debian kernel in QEMU (part of check)
 	@$(MAKE) --no-print-directory -j2 check-panel-built
 
-bench: deps ## Measure: instructions a pixel, ratios against peers, memory, the panel's latency
-	@$(MAKE) --no-print-directory all
+bench: deps ## Measure: instructions a pixel, ratios against peers, memory, the panel's latency, each beside its goal
+	@$(MAKE) --no-print-directory -j$(CORES) all
 	@sh tests/bench/bench.sh $(O)
 	@$(MAKE) --no-print-directory bench-panel
 

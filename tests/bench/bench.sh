@@ -1,7 +1,8 @@
 #!/bin/sh
 # bench.sh BUILD-DIR [counts]: what a pixel and a line cost in instructions (callgrind counts them, so that the figures are the
-# same on a busy machine), tiles read for a picture, time against the reference in double precision, and the
-# classifier beside its peers; or the counts alone. Nothing here passes or fails.
+# same on a busy machine), tiles read for a picture, time against the reference in double precision and against GDAL, and
+# the classifier beside its peers; or the counts alone. At the end: goal, last release and now. Nothing here passes or
+# fails.
 set -eu
 build=${1:?usage: bench.sh BUILD-DIR [counts]}
 here=$(dirname "$0")
@@ -75,11 +76,16 @@ if command -v valgrind > /dev/null; then
         echo "$mode, 10 nautical miles, on a glass of 512 x 512: instructions a line drawn ($lines lines, $samples sampled)"
         table "$lines" '%7.0f' "$mode, a line" < "$work/$mode"
     done
-    python3 -B "$here/../figures/figures.py" bench < "$work/figures"
 else
     echo "bench: valgrind is missing (make deps), no instructions counted"
 fi
-[ "${2:-}" != counts ] || exit 0
+keep() { # those measured, beside their goals and the last release's
+    [ ! -s "$work/figures" ] || python3 -B "$here/../figures/figures.py" bench < "$work/figures"
+}
+[ "${2:-}" != counts ] || { keep; exit 0; }
+
+echo
+python3 -B "$here/host.py" "$build" "$work/figures"
 
 echo
 echo "Processor time of the patch: ns a pixel, firmware and double-precision reference, five runs"
@@ -101,6 +107,7 @@ if [ -r build/run/scene.lmdb ] && [ -r build/run/flight.log ]; then
     "$build"/bin/landmass-sim --db build/run/scene.lmdb --bus build/run/flight.log --script build/run/flight.script \
         --png "$work/png" --every 0 > "$work/sim" 2>&1 || { cat "$work/sim"; exit 1; }
     sed -n 's/^/  /; /frames\|pictures\|tiles:/p' "$work/sim"
+    python3 -B "$here/flash.py" "$build"
 else
     echo "No build/run/scene.lmdb (make run): no tiles counted"
 fi
@@ -130,3 +137,6 @@ if [ -x "$build/bin/landmass-netem" ]; then
     echo
     sh "$here/netem.sh" "$build"
 fi
+
+keep
+python3 -B "$here/../figures/figures.py" --goals

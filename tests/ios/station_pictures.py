@@ -1,6 +1,6 @@
 """The pictures of docs/ios.md: the instructor's page on landmass-ios, beside a display that flies over the built-in scene.
 
-Usage: station_pictures.py build/run/scene.lmdb docs/pictures, after `make run ios-site`."""
+Usage: station_pictures.py build/run/scene.lmdb docs/pictures, after `make all run ios-site`."""
 import pathlib
 import subprocess
 import sys

@@ -23,6 +23,7 @@ MODES = dict(enumerate(SECTORS + ["SAR patch", "SAR patch finer than the map", "
 PATCH = len(SECTORS)
 FINER = PATCH + 1
 PATCH_CELLS = 256
+PATCH_PX = 549  # of a patch's side on the glass of 768 x 768: lm_frame_of_display
 TILE_BYTES = 17472
 
 
@@ -140,11 +141,16 @@ def print_tiles(modes):
 
 def record(modes, first_picture_us):
     rows = [(cost, "instructions", what) for cost, what in tile_costs(modes)]
+    rows.append((max(stages[step][2] for stages in modes.values() for step in ("step", "frame-step")), "instructions",
+                 "worst step of all"))
     for mode, stages in sorted(modes.items()):
         if "line" in stages:
             drawn, paint = a_line(stages, PATCH_STAGES if mode >= PATCH else SECTOR_STAGES)
             rows += [(drawn, "instructions", f"{MODES[mode]}, a line"),
                      (paint, "instructions", f"{MODES[mode]}, painting a line")]
+            if mode >= PATCH:
+                rows += [(drawn / PATCH_CELLS, "instructions", f"{MODES[mode]}, a pixel"),
+                         (paint * PATCH_CELLS / PATCH_PX**2, "instructions", f"{MODES[mode]}, painting a pixel of the glass")]
         rows += [(stages["step"][2], "instructions", f"{MODES[mode]}, worst step"),
                  (stages["frame-step"][2], "instructions", f"{MODES[mode]}, worst step with a frame")]
         if "steady-frame" in stages:
