@@ -195,6 +195,24 @@ TEST(what_is_for_others_or_no_request_is_left_alone)
     ask(&silent, 0, LM_CANAS_IDS, 0);
     lm_canas_service_answer(&silent, &can, 0, 0);
     assert_int_equal(w.count, 0);
+    lm_canas_service_tell_state(&silent, 0); /* no node has no state to tell */
+    lm_canas_service_answer(&silent, &can, 0, 0);
+    assert_int_equal(w.count, 0);
+}
+
+TEST(a_state_is_told_unasked_and_once)
+{
+    struct lm_canas_service s = begin();
+    struct wire w = {.answer = LM_OK};
+    const struct lm_can can = port_of(&w);
+    lm_canas_service_tell_state(&s, 1000);
+    lm_canas_service_answer(&s, &can, 7, 1000);
+    assert_int_equal(w.count, 1);
+    assert_int_equal(w.sent[0].id, LM_CANAS_STATE_ID);
+    assert_memory_equal(w.sent[0].data, "\x14\5\0\0\0\0\0\7", 8);
+    lm_canas_service_answer(&s, &can, 7, 50000);
+    assert_int_equal(w.count, 1);
+    assert_int_equal(s.count.asked[2], 0); /* nobody has asked */
 }
 
 TEST(an_answer_waits_100_ms_for_the_bus_and_no_longer)

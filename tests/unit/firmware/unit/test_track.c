@@ -128,6 +128,22 @@ TEST(the_sweep_rests_while_a_track_is_held_and_goes_on_behind_it)
     free_rig(r);
 }
 
+TEST(the_key_held_ranges_instead_of_ending_the_track)
+{
+    struct rig *r = rig_at(46.01, 11.03);
+    command(r, track_it);
+    run(r, 0.5);
+    assert_int_equal(track_of(r)->kind, LM_TRACK_FIXED);
+    hold(r, 17, 1);
+    run(r, 0.5);
+    assert_int_equal(track_of(r)->kind, LM_TRACK_RANGING);
+    assert_int_not_equal(track_of(r)->state, LM_TRACK_OFF);
+    hold(r, 17, 1); /* once more ends it */
+    run(r, 0.5);
+    assert_int_equal(track_of(r)->state, LM_TRACK_OFF);
+    free_rig(r);
+}
+
 /* Runs until the track ends; fails if it coasts for a time other than said. */
 static void coasts_then_drops(struct rig *r, enum lm_track_loss loss)
 {
