@@ -104,6 +104,33 @@ TEST(designating_is_refused_without_cursor_navigation_or_transmitter)
     free_rig(r);
 }
 
+/* The track key and the ranging one alike. */
+static void expect_of_tracks(struct rig *r, enum lm_refusal reason, bool is_on_glass)
+{
+    expect(r, (struct lm_control){.kind = LM_CONTROL_TRACK}, reason, is_on_glass);
+    expect(r, (struct lm_control){.kind = LM_CONTROL_RANGING}, reason, is_on_glass);
+    assert_int_equal(r->unit.track.state, LM_TRACK_OFF);
+}
+
+TEST(a_track_is_refused_for_what_it_lacks)
+{
+    struct rig *r = listened_rig();
+    r->bus.is_down = 1;
+    run(r, 0.1);
+    expect_of_tracks(r, LM_REFUSED_NAV, true);
+    r->bus.is_down = 0;
+    run(r, 3);
+    press(r, 4);
+    expect_of_tracks(r, LM_REFUSED_SILENT, true);
+    press(r, 4);
+    press(r, 12);
+    expect_of_tracks(r, LM_REFUSED_PAGE, false);
+    press(r, 13);
+    r->unit.map.is_usable = false;
+    expect_of_tracks(r, LM_REFUSED_MAP, true);
+    free_rig(r);
+}
+
 TEST(a_patch_without_a_map_is_refused_for_that)
 {
     struct rig *r = listened_rig();
@@ -124,6 +151,33 @@ TEST(a_value_out_of_range_is_told_to_its_source_and_not_on_the_glass)
            LM_REFUSED_VALUE, false);
     expect(r, lm_control_button(true, 99), LM_REFUSED_VALUE, false);
     expect(r, lm_control_knob(1001), LM_REFUSED_VALUE, false);
+    expect(r, lm_control_slew(LM_FULL_DEFLECTION + 1, 0), LM_REFUSED_VALUE, false);
+    expect(r, lm_control_slew(0, -LM_FULL_DEFLECTION - 1), LM_REFUSED_VALUE, false);
+    assert_true(r->unit.cursor.slew_x == 0 && r->unit.cursor.slew_y == 0);
+    const int32_t places[] = {INT32_MIN, 0, 1, LM_IMAGES_MAX + 1};
+    for (size_t i = 0; i < sizeof places / sizeof *places; i++) {
+        expect(r, (struct lm_control){.kind = LM_CONTROL_IMAGE, .image = {.place = places[i]}},
+               LM_REFUSED_VALUE, false);
+    }
+    free_rig(r);
+}
+
+/* Each number a step beyond its range, below and above; the others are good. */
+TEST(a_state_of_slots_out_of_range_is_refused_and_the_one_before_stays)
+{
+    const struct lm_slots_state good = {2, 3, 3, LM_LOADS - 1, 100};
+    const struct lm_slots_state wrong[] = {
+        {3, 0, 0, 0, 0},   {-1, 0, 0, 0, 0}, {0, 4, 0, 0, 0},        {0, -1, 0, 0, 0},
+        {0, 0, 4, 0, 0},   {0, 0, -1, 0, 0}, {0, 0, 0, LM_LOADS, 0}, {0, 0, 0, -1, 0},
+        {0, 0, 0, 0, 101}, {0, 0, 0, 0, -1}};
+    struct rig *r = listened_rig();
+    run(r, 1);
+    expect(r, (struct lm_control){.kind = LM_CONTROL_SLOTS, .slots = good}, LM_REFUSED_NOT, false);
+    for (size_t i = 0; i < sizeof wrong / sizeof *wrong; i++) {
+        expect(r, (struct lm_control){.kind = LM_CONTROL_SLOTS, .slots = wrong[i]},
+               LM_REFUSED_VALUE, false);
+        assert_memory_equal(&r->unit.slots, &good, sizeof good);
+    }
     free_rig(r);
 }
 
