@@ -82,10 +82,12 @@ static bool take_take(struct lm_unit *u, uint8_t code, bool is_ready)
     return is_done;
 }
 
+/* Not called while the partner takes this display's page: then what was heard is an answer, and
+ * stays one. */
 static bool take_ask(struct lm_unit *u, uint8_t code)
 {
     struct lm_swap *s = &u->swap;
-    if (s->state == LM_SWAP_TAKING || (s->state == LM_SWAP_ASKING && s->partner > s->node)) {
+    if (s->state == LM_SWAP_ASKING && s->partner > s->node) {
         return false;
     }
     s->exchange = code;

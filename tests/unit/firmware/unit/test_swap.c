@@ -32,6 +32,7 @@ struct wire {
     uint32_t noise;              /* chance of a loss in 256, by `seed` */
     uint32_t seed;
     uint32_t busy; /* sends that find the bus busy, from now on */
+    bool doubles;  /* each frame comes twice */
 };
 
 static uint32_t draw(struct wire *w)
@@ -70,7 +71,7 @@ static int say(void *ctx, const struct lm_can_frame *frame)
     const bool is_lost = (n < 128 && (w->lost[n / 64] >> n % 64 & 1) != 0) ||
                          (n >= w->lost_from && n < w->lost_to) || draw(w) < w->noise;
     for (uint32_t i = 0; i < w->seats && !is_lost; i++) {
-        if (&w->seat[i] != from) {
+        for (int copy = 0; copy <= w->doubles && &w->seat[i] != from; copy++) {
             put_to(&w->seat[i], frame);
         }
     }
@@ -348,6 +349,57 @@ TEST(who_press_at_the_same_moment_exchange_once)
         assert_in_range(outcome(left, right), 0, 1);
         assert_int_equal(left->unit.count.commands_refused + right->unit.count.commands_refused, 0);
     }
+    close_wire(w);
+}
+
+/* The right one has the higher node and asks first, in five steps of four frames. The left one
+ * presses before ASK has come: it does not answer, as it asks itself, and is answered. */
+TEST(who_has_the_lower_node_and_asks_does_not_answer)
+{
+    struct rig *left, *right;
+    struct wire *w = begin_pair(&left, &right);
+    for (uint32_t late = 1; late < 4; late++) {
+        const int before = outcome(left, right);
+        const uint32_t swaps = left->unit.count.swaps;
+        press_osb(right, 15);
+        fly(w, late * STEP_US * 1e-6);
+        press_osb(left, 15);
+        fly(w, 0.2);
+        assert_int_equal(outcome(left, right), 1 - before);
+        assert_int_equal(left->unit.count.swaps, swaps + 1);
+        assert_int_equal(right->unit.count.swaps, swaps + 1);
+        assert_int_equal(left->unit.swap.refused, late); /* ASK of the right one */
+        assert_int_equal(left->unit.count.commands_refused + right->unit.count.commands_refused, 0);
+    }
+    close_wire(w);
+}
+
+TEST(frames_that_come_twice_count_once)
+{
+    struct rig *left, *right;
+    struct wire *w = begin_pair(&left, &right);
+    w->doubles = true;
+    press_osb(left, 15);
+    fly(w, 1.5);
+    assert_int_equal(outcome(left, right), 1);
+    assert_int_equal(left->unit.count.swaps, 1);
+    assert_int_equal(right->unit.count.swaps, 1);
+    assert_int_equal(left->unit.count.commands_refused + right->unit.count.commands_refused, 0);
+    close_wire(w);
+}
+
+TEST(a_display_is_not_its_own_partner)
+{
+    struct wire *w = calloc(1, sizeof *w);
+    assert_non_null(w);
+    struct rig *r = sit(w, LEFT, LEFT);
+    command(r, range_10);
+    fly(w, 0.1);
+    w->sent = 0;
+    press_osb(r, 15);
+    fly(w, 0.1);
+    assert_true(says_no_swap(r));
+    assert_int_equal(w->sent, 0);
     close_wire(w);
 }
 
