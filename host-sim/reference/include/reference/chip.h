@@ -23,10 +23,10 @@ double ref_chip_cell_m2(const struct ref_chip *c, int block, double right_m, dou
 double ref_chip_cell_shadow(const struct ref_chip *c, double right_m, double beyond_m,
                             double cell_m);
 
-/* Where a chip shows a place of ground that is not level: so far beyond the origin does the ray that
- * meets the place meet the level of the target's foot. The ray comes from an antenna `range_m` from
- * the target and `antenna_m` above its foot; the place is `beyond_m` behind it and `rise_m` above
- * its foot. Found on the ray itself, the Earth being curved. */
+/* Where a chip shows a place of ground that is not level: so far beyond the origin does the ray
+ * that meets the place meet the level of the target's foot. The ray comes from an antenna `range_m`
+ * from the target and `antenna_m` above its foot; the place is `beyond_m` behind it and `rise_m`
+ * above its foot. Found on the ray itself, the Earth being curved. */
 double ref_chip_level_m(double antenna_m, double range_m, double beyond_m, double rise_m);
 
 #endif

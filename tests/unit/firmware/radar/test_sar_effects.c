@@ -257,8 +257,7 @@ TEST(what_layover_takes_from_the_ends_of_a_patch_is_traced_beyond_them)
     scene.relief = lm_sar_relief_of(&map.tiles, &lm_radar_default, &from_the_south);
     assert_true(abs(scene.relief.reference_m_q10 - 500 * 1024) < 2 * 1024);
     draw(&from_the_south, &scene);
-    print_message("# %u cells traced, %u of them before the patch\n", sar.traced,
-                  sar.overscan);
+    print_message("# %u cells traced, %u of them before the patch\n", sar.traced, sar.overscan);
     assert_in_range(sar.overscan, 12, 24);
     assert_in_range(sar.traced - sar.overscan - CELLS, 12, 24);
     const double middle_db = mean_db_of_cells(100, 156);
