@@ -16,6 +16,7 @@ except ImportError:
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 BUILD = pathlib.Path(os.environ.get("BUILD", "build/bench-linux"))
 WAIT_S = 60
+SCRIPT_S = 180
 
 
 def lacks():
@@ -48,6 +49,8 @@ class Browser:
             options.add_argument(word)
         options.set_capability("goog:loggingPrefs", {"browser": "ALL"})
         self.driver = webdriver.Chrome(options=options)
+        # The driver's own 30 s are short where panels, a server, two browsers and another test share two cores.
+        self.driver.set_script_timeout(SCRIPT_S)
         self.url = url
 
     def get(self, page=""):
