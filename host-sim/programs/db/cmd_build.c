@@ -150,8 +150,8 @@ bool build_job_read(struct build_settings *s, enum build_command command, struct
                "none"),
         OPTION("cell", HS_REAL, cell_m, 0, 10000, "METRES",
                "about this cell size: the nearest of 0.149 m x 2^n;\n"
-               "0: the pixel size of the class raster, or else of the terrain, or the next smaller "
-               "cell"),
+               "0: the pixel size of the class raster, or else two thirds of the terrain's, or the "
+               "next smaller cell"),
         OPTION(
             "shift0", HS_INTEGER, shift0, 0, LM_DB_SHIFT_MAX, "N",
             "cell size as a power of two (docs/FORMATS.md, 1.2): 2^N x 9.3 mm; 0: as --cell says"),
@@ -366,9 +366,11 @@ static double cover_pixel_bam(const struct resample_cover *c)
     return pixel_bam(&c->area, c->pixel_latitude_bam, c->pixel_longitude_bam);
 }
 
-static double terrain_pixel_bam(const struct terrain_layer *layer)
+/* Distance of posts that keeps a model's crests: two thirds of its pixel. Posts as far apart as the
+ * pixels lie beside them. */
+static double terrain_posts_bam(const struct terrain_layer *layer)
 {
-    return pixel_bam(&layer->area, layer->pixel_latitude_bam, layer->pixel_longitude_bam);
+    return pixel_bam(&layer->area, layer->pixel_latitude_bam, layer->pixel_longitude_bam) * 2 / 3;
 }
 
 static int choose_shift0(const struct build_context *b, const struct build_settings *s)
@@ -381,7 +383,7 @@ static int choose_shift0(const struct build_context *b, const struct build_setti
     }
     double pixel = b->cover.classes.dataset ? cover_pixel_bam(&b->cover) : HUGE_VAL;
     for (int i = 0; !b->cover.classes.dataset && i < b->terrain.layer_count; i++) {
-        pixel = fmin(pixel, terrain_pixel_bam(&b->terrain.layers[i]));
+        pixel = fmin(pixel, terrain_posts_bam(&b->terrain.layers[i]));
     }
     const int shift = build_plan_level(0, pixel);
     return shift < LM_DB_SHIFT_MIN   ? LM_DB_SHIFT_MIN
@@ -414,7 +416,7 @@ static int make_plan(struct build_context *b, const struct build_settings *s)
     int finest = LM_DB_SHIFT_MAX;
     for (int i = 0; i < layers; i++) {
         const struct terrain_layer *layer = &b->terrain.layers[i];
-        const int level = build_plan_level((uint8_t)shift0, terrain_pixel_bam(layer));
+        const int level = build_plan_level((uint8_t)shift0, terrain_posts_bam(layer));
         extents[i] = (struct build_extent){layer->area, level < 0 ? 0 : level};
         finest = extents[i].level < finest ? extents[i].level : finest;
     }
