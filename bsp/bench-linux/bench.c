@@ -180,7 +180,7 @@ int bench_open(struct bench *b, const struct bench_scene *scene, const struct be
 
 void bench_settle(struct bench *b)
 {
-    for (uint32_t i = 1; i < LM_IMAGES_MAX; i++) {
+    for (uint32_t i = 0; i < LM_IMAGES_MAX; i++) {
         if (b->is_leaving[i] && lm_tile_cache_is_drained(&b->unit->map.tiles)) {
             (void)drv_flash_joined_put(&b->joined, i, NULL);
             drv_flash_file_close(&b->flash[i]);
@@ -210,6 +210,12 @@ static int open_late(struct bench *b, uint32_t place, const char *path, struct l
     return part.bytes == 0 ? -1 : 0;
 }
 
+static bool is_last(const struct bench *b, uint32_t place)
+{
+    const struct lm_unit_map *const map = &b->unit->map;
+    return map->image_count == 1 && map->images[0].base == b->board.images[place].offset;
+}
+
 int bench_mount(struct bench *b, int32_t place, const char *path, struct lm_control *control)
 {
     const uint32_t at = (uint32_t)place - 1;
@@ -220,6 +226,11 @@ int bench_mount(struct bench *b, int32_t place, const char *path, struct lm_cont
     }
     if (!has_file(b, at)) {
         snprintf(b->error, sizeof b->error, "no image is at place %d", (int)place);
+        return -1;
+    }
+    if (is_last(b, at)) {
+        snprintf(b->error, sizeof b->error, "the image at place %d is the only one; it stays",
+                 (int)place);
         return -1;
     }
     b->is_leaving[at] = true;

@@ -66,9 +66,9 @@ int bench_open(struct bench *b, const struct bench_scene *scene, const struct be
                uint32_t noise_seed, const struct bench_bus *bus,
                const struct lm_controls *controls);
 
-/* Open the image `path` at a place, 2..LM_IMAGES_MAX, where none is, or take out the one that is
- * there (NULL), and fill the control that tells the unit. Returns 0; or -1, with the cause in
- * b->error and nothing changed. */
+/* Open the image `path` at a place, 1..LM_IMAGES_MAX, where none is, or take out the one that is
+ * there (NULL), and fill the control that tells the unit. The only image cannot be taken out.
+ * Returns 0; or -1, with the cause in b->error and nothing changed. */
 int bench_mount(struct bench *b, int32_t place, const char *path, struct lm_control *control);
 
 /* Close the files of images that have gone. Call behind each step. */

@@ -240,7 +240,7 @@ static void let_go(struct further *f, const struct lm_unit *unit, uint32_t i)
     struct further_place *p = &f->place[i];
     if (is_held(unit, i)) {
         report(REPORT_ERROR,
-               "%s: gone or changed, and flown on: the tables are its; restart the panel",
+               "%s: gone or changed, and flown on: it is the only one; restart the panel",
                path_of(f, i));
         atomic_store(&p->state, FURTHER_STAYS);
     } else if (lm_tile_cache_is_drained(&unit->map.tiles)) {

@@ -29,7 +29,7 @@ enum further_state {
     FURTHER_FLOWN, /* or told to the unit, which refused it */
     FURTHER_GOES,
     FURTHER_GONE,
-    FURTHER_STAYS /* the unit has its tables from it */
+    FURTHER_STAYS /* the unit has no other image */
 };
 
 /* What tells that a file is another one, or was written to. All zero: there is none. */

@@ -11,12 +11,19 @@ enum {
     POINT_BELOW_CELLS = 4
 };
 
-void lm_chips_init(struct lm_chips *c, const struct lm_db *db,
+void lm_chips_init(struct lm_chips *c, const struct lm_chip_source *sources,
                    const struct lm_signature *signatures)
 {
     memset(c, 0, sizeof *c);
-    c->db = db;
+    c->sources = sources;
     c->signatures = signatures;
+}
+
+void lm_chips_empty(struct lm_chips *c)
+{
+    memset(c->slots, 0, sizeof c->slots);
+    c->busy = NULL;
+    c->is_reading = false;
 }
 
 /* ---- choosing ---- */
@@ -157,7 +164,8 @@ static void start_read(struct lm_chips *c, struct lm_tile_cache *tiles, struct l
     const struct lm_chip_key *key = &slot->key;
     const struct lm_signature *s = &c->signatures[key->signature];
     const uint64_t number = s->chip0 + (uint32_t)key->depression * s->aspects + key->aspect;
-    c->read = (struct lm_flash_request){.offset = c->db->chips_offset + number * LM_CHIP_BYTES,
+    c->read = (struct lm_flash_request){.offset = c->sources[key->signature].chips_offset +
+                                                  number * LM_CHIP_BYTES,
                                         .destination = &c->stage,
                                         .length = LM_CHIP_BYTES};
     if (lm_tile_cache_read(tiles, &c->read)) {
@@ -292,7 +300,8 @@ static void take_read(struct lm_chips *c)
     if (c->read.status != LM_OK) {
         c->count.io_errors++;
         finish(c, LM_CHIP_BAD);
-    } else if (lm_chip_check(&c->stage, key->signature, key->aspect, key->depression) != LM_OK) {
+    } else if (lm_chip_check(&c->stage, c->sources[key->signature].number, key->aspect,
+                             key->depression) != LM_OK) {
         c->count.corrupt++;
         finish(c, LM_CHIP_BAD);
     } else {

@@ -237,13 +237,15 @@ static enum lm_refusal change_image(struct lm_unit *u, const struct lm_image_cha
                                     uint64_t now_us)
 {
     const uint32_t place = (uint32_t)change->place - 1, shift_was = u->map.db.shift0;
-    if (place == 0 || place >= LM_IMAGES_MAX) {
+    const uint32_t tracked = lm_tracking_listed(u);
+    if (LM_IMAGES_MAX == 1 || place >= LM_IMAGES_MAX) {
         return LM_REFUSED_VALUE;
     }
     const struct lm_flash_part part = {u->board->images[place].offset, change->bytes};
     if (lm_unit_map_mount(&u->map, place, &part, u->board->flash_poll_limit) != LM_OK) {
         return LM_REFUSED_MAP;
     }
+    lm_tracking_renumber(u, tracked, now_us);
     u->unsigned_places &= ~(1u << place);
     u->unsigned_places |= (uint32_t)change->is_unsigned << place;
     draw_on(u, shift_was, now_us);

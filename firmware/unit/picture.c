@@ -141,6 +141,7 @@ bool lm_picture_change_map(struct lm_picture *p, uint32_t shift_was)
     p->sar.foreground.lod = lod_now(p, shift_was, p->sar.foreground.lod);
     p->coverage.coarsest_lod = lod_now(p, shift_was, p->coverage.coarsest_lod);
     lm_sector_begin_again(&p->sector);
+    p->sector.candidates.is_chosen = false; /* targets have other numbers */
     p->turn.period_us = 0; /* an exercise's antenna does not rest until its next sweep either */
     return !methods(p)->moves && sar->line < sar->lines;
 }

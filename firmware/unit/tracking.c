@@ -78,6 +78,29 @@ enum lm_refusal lm_tracking_range(struct lm_unit *u, uint64_t now_us)
     return LM_REFUSED_NOT;
 }
 
+uint32_t lm_tracking_listed(const struct lm_unit *u)
+{
+    const struct lm_track *t = &u->track;
+    const bool is_listed = t->state != LM_TRACK_OFF && t->has_target && !t->is_live &&
+                           t->index < u->map.target_set.count;
+    return is_listed ? u->map.targets[t->index].crc : 0;
+}
+
+void lm_tracking_renumber(struct lm_unit *u, uint32_t tracked, uint64_t now_us)
+{
+    uint32_t i = 0;
+    u->track.search.next = 0;
+    u->track.search.has_best = false;
+    while (i < u->map.target_set.count && u->map.targets[i].crc != tracked) {
+        i++;
+    }
+    if (tracked != 0 && i < u->map.target_set.count) {
+        u->track.index = (uint16_t)i;
+    } else if (tracked != 0) {
+        lm_track_end(&u->track, LM_TRACK_NOTHING, now_us);
+    }
+}
+
 bool lm_tracking_drop(struct lm_unit *u, uint64_t now_us)
 {
     const bool is_on = u->track.state != LM_TRACK_OFF;

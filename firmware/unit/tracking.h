@@ -15,6 +15,13 @@ enum lm_refusal lm_tracking_range(struct lm_unit *u, uint64_t now_us);
 /* End the track. False if there was none. */
 bool lm_tracking_drop(struct lm_unit *u, uint64_t now_us);
 
+/* Checksum of the record of an image's target that is tracked; 0: none is. */
+uint32_t lm_tracking_listed(const struct lm_unit *u);
+
+/* The images' targets have other numbers: go on with the one of that checksum. The track ends if it
+ * has gone with its image; a search begins again. */
+void lm_tracking_renumber(struct lm_unit *u, uint32_t tracked, uint64_t now_us);
+
 /* Measure what is due; hold the cursor at what is tracked. Call in every step. */
 void lm_tracking_step(struct lm_unit *u, uint64_t now_us);
 

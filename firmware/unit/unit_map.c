@@ -9,35 +9,88 @@
 
 enum { TILE_READS_A_STEP = 16 };
 
-/* Read the image's targets. No tile is being read yet, so this may wait for the flash. */
-static void read_targets(struct lm_unit_map *m, uint32_t poll_limit)
+uint32_t lm_unit_map_image_from(const struct lm_unit_map *m, uint64_t offset)
 {
-    uint32_t count = 0;
-    for (uint32_t i = 0; i < m->db.target_count && count < LM_TARGETS_MAX; i++) {
-        if (lm_target_read(&m->db, i, &m->targets[count], poll_limit) == LM_OK) {
-            count++;
-        }
+    uint32_t i = 0;
+    while (i < m->image_count && m->images[i].base != offset) {
+        i++;
     }
-    m->target_set.items = m->targets;
-    m->target_set.count = count;
-    m->count.targets_lost = m->db.target_count - count;
+    return i;
 }
 
-/* Read the image's signatures. Targets name them by number, so each keeps its number, and one that
- * is lost is left empty: its targets return no echo. */
-static void read_signatures(struct lm_unit_map *m, uint32_t poll_limit)
+/* Number of the image of a place of the board; image_count: none is there, or it is refused. */
+static uint32_t image_of_place(const struct lm_unit_map *m, uint32_t place)
 {
-    const uint32_t count = fx_min_u32(m->db.signature_count, LM_SIGNATURES_MAX);
-    m->count.signatures_lost = m->db.signature_count - count;
-    for (uint32_t i = 0; i < count; i++) {
-        if (lm_signature_read(&m->db, i, &m->signatures[i], poll_limit) != LM_OK) {
-            memset(&m->signatures[i], 0, sizeof m->signatures[i]);
+    const bool is_open = m->parts[place].bytes != 0 && m->part_status[place] == LM_OK;
+    return is_open ? lm_unit_map_image_from(m, m->parts[place].offset) : m->image_count;
+}
+
+/* Signatures of an image that have room. */
+static uint32_t signatures_held(const struct lm_unit_map *m, const struct lm_db *image)
+{
+    return fx_min_u32(image->signature_count, LM_SIGNATURES_MAX - m->target_set.signature_count);
+}
+
+/* Read the targets of an image, whose signatures are read next: behind those that are there. */
+static void read_targets(struct lm_unit_map *m, const struct lm_db *image, uint32_t poll_limit)
+{
+    const uint32_t before = m->target_set.count, held = signatures_held(m, image);
+    for (uint32_t i = 0; i < image->target_count && m->target_set.count < LM_TARGETS_MAX; i++) {
+        struct lm_target *const t = &m->targets[m->target_set.count];
+        if (lm_target_read(image, i, t, poll_limit) != LM_OK) {
+            continue;
+        }
+        m->target_set.count++;
+        if (t->flags & LM_TARGET_HAS_SIGNATURE) {
+            t->signature =
+                (uint8_t)(t->signature < held ? m->target_set.signature_count + t->signature
+                                              : LM_SIGNATURES_MAX);
+        }
+    }
+    m->count.targets_lost += image->target_count - (m->target_set.count - before);
+}
+
+/* Read the signatures of an image. Targets name them by number, so each keeps its place, and one
+ * that is lost is left empty: its targets return no echo. */
+static void read_signatures(struct lm_unit_map *m, const struct lm_db *image, uint32_t poll_limit)
+{
+    const uint32_t held = signatures_held(m, image);
+    m->count.signatures_lost += image->signature_count - held;
+    for (uint32_t i = 0; i < held; i++) {
+        const uint32_t at = m->target_set.signature_count++;
+        m->chip_source[at] = (struct lm_chip_source){image->chips_offset, i};
+        if (lm_signature_read(image, i, &m->signatures[at], poll_limit) != LM_OK) {
+            memset(&m->signatures[at], 0, sizeof m->signatures[at]);
             m->count.signatures_lost++;
         }
     }
+}
+
+/* Read targets and signatures of all images, in the order of the board's places. No tile and no
+ * chip is being read, so this may wait for the flash. */
+static void read_all_targets(struct lm_unit_map *m, uint32_t poll_limit)
+{
+    m->target_set.items = m->targets;
     m->target_set.signatures = m->signatures;
-    m->target_set.signature_count = count;
-    lm_chips_init(&m->chips, &m->db, m->signatures);
+    m->target_set.count = m->target_set.signature_count = 0;
+    m->count.targets_lost = m->count.signatures_lost = 0;
+    for (uint32_t place = 0; place < LM_IMAGES_MAX; place++) {
+        const uint32_t i = image_of_place(m, place);
+        if (i < m->image_count) {
+            read_targets(m, &m->images[i], poll_limit);
+            read_signatures(m, &m->images[i], poll_limit);
+        }
+    }
+}
+
+/* The flash hangs: no targets can be read, and those of before may be an image's that has gone. */
+static void lose_targets(struct lm_unit_map *m)
+{
+    m->target_set.count = 0;
+    m->count.targets_lost = 0;
+    for (uint32_t i = 0; i < m->image_count; i++) {
+        m->count.targets_lost += m->images[i].target_count;
+    }
 }
 
 /* Read the image's radar table. */
@@ -128,7 +181,8 @@ static int open_further(struct lm_unit_map *m, const struct lm_flash_part *part,
 static void open_parts(struct lm_unit_map *m, const struct lm_unit_map_lent *lent)
 {
     for (uint32_t i = 0; i < LM_IMAGES_MAX; i++) {
-        const struct lm_flash_part *part = &lent->parts[i];
+        const struct lm_flash_part *const part = &m->parts[i];
+        m->parts[i] = lent->parts[i];
         if (i > 0 && part->bytes == 0) {
             continue;
         }
@@ -171,18 +225,9 @@ int lm_unit_map_open(struct lm_unit_map *m, const struct lm_unit_map_lent *lent)
     if (!m->is_usable) {
         return LM_OK;
     }
-    read_targets(m, lent->flash_poll_limit);
-    read_signatures(m, lent->flash_poll_limit);
+    lm_chips_init(&m->chips, m->chip_source, m->signatures);
+    read_all_targets(m, lent->flash_poll_limit);
     return open_tiles(m, lent);
-}
-
-uint32_t lm_unit_map_image_from(const struct lm_unit_map *m, uint64_t offset)
-{
-    uint32_t i = 0;
-    while (i < m->image_count && m->images[i].base != offset) {
-        i++;
-    }
-    return i;
 }
 
 static void take_out(struct lm_unit_map *m, uint64_t offset)
@@ -206,19 +251,41 @@ static bool drain(struct lm_unit_map *m, uint32_t poll_limit)
     return lm_tile_cache_is_drained(&m->tiles);
 }
 
+/* The image of the first place leads: what all have in common is read from its tables. The radar
+ * is that of the start; who has a table of its own has that one. */
+static void lead(struct lm_unit_map *m)
+{
+    const uint32_t radar_bytes = m->db.radar_bytes, radar_crc = m->db.radar_crc;
+    uint32_t place = 0;
+    while (place + 1 < LM_IMAGES_MAX && image_of_place(m, place) == m->image_count) {
+        place++;
+    }
+    m->db = m->images[image_of_place(m, place)];
+    m->db.radar_bytes = radar_bytes;
+    m->db.radar_crc = radar_crc;
+    lm_images_view(&m->db, m->images, m->image_count);
+}
+
 int lm_unit_map_mount(struct lm_unit_map *m, uint32_t place, const struct lm_flash_part *part,
                       uint32_t poll_limit)
 {
-    if (!m->is_usable || place == 0 || place >= LM_IMAGES_MAX || part->offset == m->db.base) {
+    const bool is_last = m->image_count == 1 && m->images[0].base == part->offset;
+    if (!m->is_usable || LM_IMAGES_MAX == 1 || place >= LM_IMAGES_MAX || is_last) {
         return LM_ERR_RANGE;
     }
     const bool is_drained = drain(m, poll_limit);
     take_out(m, part->offset);
+    m->parts[place] = *part;
     m->part_status[place] = part->bytes == 0 ? LM_OK
                             : is_drained     ? open_further(m, part, poll_limit)
                                              : LM_ERR_IO;
-    m->db = m->images[lm_unit_map_image_from(m, m->db.base)];
-    lm_images_view(&m->db, m->images, m->image_count);
+    lead(m);
+    if (is_drained) {
+        lm_chips_empty(&m->chips);
+        read_all_targets(m, poll_limit);
+    } else {
+        lose_targets(m);
+    }
     m->geoid = (struct lm_geoid_reader){.corrupt = m->geoid.corrupt};
     lm_tile_cache_mount(&m->tiles, m->images, m->image_count);
     return LM_OK;

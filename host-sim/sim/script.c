@@ -256,7 +256,7 @@ static bool parse_mount(char **words, int count, struct script_event *e)
 {
     double place;
     const bool comes = strcmp(words[1], "mount") == 0;
-    if (count != 3 + comes || !hs_number_within(words[2], 2, LM_IMAGES_MAX, &place) ||
+    if (count != 3 + comes || !hs_number_within(words[2], 1, LM_IMAGES_MAX, &place) ||
         place != floor(place)) {
         return false;
     }

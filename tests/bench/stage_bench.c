@@ -54,6 +54,7 @@ struct world {
     struct lm_db db;
     struct lm_tile_cache tiles;
     struct lm_signature signature;
+    struct lm_chip_source chip_source;
     struct lm_chips chips;
     struct lm_target targets[TARGETS];
     void *pool;
@@ -114,7 +115,8 @@ static struct lm_target_set parked(struct world *w)
             .flags = LM_TARGET_ABOVE_GROUND | LM_TARGET_HAS_SIGNATURE,
         };
     }
-    lm_chips_init(&w->chips, &w->db, &w->signature);
+    w->chip_source = (struct lm_chip_source){w->db.chips_offset, 0};
+    lm_chips_init(&w->chips, &w->chip_source, &w->signature);
     return (struct lm_target_set){w->targets, TARGETS, &w->signature, 1, NULL};
 }
 

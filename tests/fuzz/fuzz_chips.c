@@ -14,6 +14,7 @@ enum { POLLS = 64, LINES = 64, CELLS = 132, STEPS_MOST = 200 };
 
 struct world {
     struct lm_signature signature;
+    struct lm_chip_source chip_source;
     struct lm_chip chip;
     struct memory_flash flash;
     struct lm_db db;
@@ -171,7 +172,8 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
     w->tiles.db = &w->db;
     w->tiles.reading_slot = LM_SLOT_NONE;
     for (int is_window = 0; is_window < 2; is_window++) {
-        lm_chips_init(&w->chips, &w->db, &w->signature);
+        w->chip_source = (struct lm_chip_source){w->db.chips_offset, 0};
+        lm_chips_init(&w->chips, &w->chip_source, &w->signature);
         choose(w, is_window);
         serve(w);
         draw_patch(w);

@@ -49,7 +49,7 @@ done
 check 'a point needs no chip' printed 'chips: 0 read'
 check 'a target with a signature' fly towards-0
 check 'needs one, and it is read' printed 'chips: 1 read, 0 damaged, 0 without room, 0 cells of lines left out'
-check 'nothing of the image is lost' printed 'targets: 1 held, 0 of the image not; signatures: 1 held, 0 not'
+check 'nothing of the image is lost' printed 'targets: 1 held, 0 of the images not; signatures: 1 held, 0 not'
 check 'it is not shown as a point' differ towards-0 point
 check 'and shows which way it faces' differ towards-0 towards-120
 

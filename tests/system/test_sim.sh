@@ -389,8 +389,21 @@ check 'the recording of it is shown again' exits 0 "$sim" --db "$db" --db2 "$wor
 check 'without a departure' grep -qE 'failed 0; departures 0$' "$out"
 check 'without the image it ends there' exits 1 "$sim" --db "$db" --replay "$work/came.log"
 check 'and says why' said 'an image comes here that is not at hand'
-printf '0 mount 1 x\n' >"$work/first.script"
-check 'the first image stays' exits 1 "$sim" --db "$db" --bus "$log" --script "$work/first.script"
+printf '0 mount 5 x\n' >"$work/fifth.script"
+check 'there is no fifth image' exits 1 "$sim" --db "$db" --bus "$log" --script "$work/fifth.script"
+printf '%b' "0 range 10\n0.5 unmount 1\n$fixed\n3.9 picture patch\n" >"$work/first-goes.script"
+printf '%b' "0 range 10\n0.5 unmount 1\n0.7 mount 1 $db\n$fixed\n3.9 picture patch\n" >"$work/first-back.script"
+check 'the first one goes' fly_images first-goes first-goes --db2 "$work/range.lmdb"
+check 'no command was refused then' test "$(number 'commands refused')" -eq 0
+check 'both from the start' fly_images both fixed --db2 "$work/range.lmdb"
+check 'the patch has changed' differ_patch first-goes both
+check 'the first one goes and comes back' fly_images first-back first-back --db2 "$work/range.lmdb"
+check 'and the patch is that of the start with both' same_patch first-back both
+check 'a recording of it is shown again' exits 0 "$sim" --db "$db" --db2 "$work/range.lmdb" \
+    --replay "$work/first-goes.log" --png "$work/first-goes-again" --every 1
+check 'with no departure' grep -qE 'failed 0; departures 0$' "$out"
+check 'the only image stays' fly_images only first-goes
+check 'and it is said why' said 'line 2: warning: the image at place 1 is the only one; it stays'
 script=$work/flight.script
 
 # The window

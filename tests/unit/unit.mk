@@ -11,7 +11,7 @@ UNIT := $(O)/bin/tests/unit
 # Sources that are no program or no part of all programs of their folder, and tests that run under the sanitizers: those
 # alone, or once more as test_*_sanitized.
 UNIT_APART          := drivers/gpio/test_gpio drivers/gpio/fake_gpiod1 drivers/gpio/fake_gpiod2
-UNIT_SANITIZED      := firmware/bus/test_bus_fuzz $(addprefix firmware/unit/test_,hostile_controls mounts radar_extremes)
+UNIT_SANITIZED      := firmware/bus/test_bus_fuzz $(addprefix firmware/unit/test_,hostile_controls mounted_targets mounts radar_extremes)
 UNIT_ALSO_SANITIZED := $(addprefix firmware/targets/test_,target_line target_patch signature)
 
 LIB_host_support := $(O)/tests/unit/host-sim/libsupport.a

@@ -22,10 +22,10 @@ static void warn_of_further(const char *path, int status)
 {
     if (status == LM_ERR_SENSOR) {
         hs_warn(path, "build both for one radar",
-                "is not shown: its reflectivity is of another band than that of --db");
+                "is not shown: its reflectivity is of another band than that of the others");
     } else if (status == LM_ERR_TABLE) {
-        hs_warn(path, "build both with one class table, and give the radar table to --db alone",
-                "is not shown: its classes or its radar table are not those of --db");
+        hs_warn(path, "build all with one class table, and give the radar table to --db alone",
+                "is not shown: its classes or its radar table are not those of the others");
     } else {
         hs_warn(path, "landmass-db verify tells what is wrong", "is no usable flash image");
     }
@@ -41,7 +41,7 @@ void images_warn(const struct images *images, const struct lm_unit_map *map, uin
     if (status == LM_ERR_VERSION) {
         hs_warn(path, "`landmass-db convert OLD NEW` makes a new image of an old one",
                 "is a flash image of another version");
-    } else if (place == 0) {
+    } else if (place == 0 && !map->is_usable) {
         warn_of_database(path, map, status);
     } else {
         warn_of_further(path, status);

@@ -559,6 +559,15 @@ static void report_bus(const struct sim *s)
     track_log_report(&s->tracks);
 }
 
+static uint32_t signatures_held(const struct lm_unit *u)
+{
+    uint32_t count = 0;
+    for (uint32_t i = 0; i < u->map.target_set.signature_count; i++) {
+        count += u->map.signatures[i].aspects != 0;
+    }
+    return count;
+}
+
 static void report_map(const struct lm_unit *u)
 {
     const struct lm_tile_cache *t = &u->map.tiles;
@@ -580,7 +589,7 @@ static void report_map(const struct lm_unit *u)
     hs_report_object("targets");
     hs_report_put("held", u->map.target_set.count);
     hs_report_put("lost", u->map.count.targets_lost);
-    hs_report_put("signatures_held", u->map.db.signature_count - u->map.count.signatures_lost);
+    hs_report_put("signatures_held", signatures_held(u));
     hs_report_put("signatures_lost", u->map.count.signatures_lost);
     hs_report_put("chips_read", u->map.chips.count.read);
     hs_report_put("chips_corrupt", u->map.chips.count.corrupt);
@@ -625,9 +634,9 @@ static void print_live(const struct lm_unit *u)
 
 static void print_targets(const struct lm_unit *u)
 {
-    printf("targets: %u held, %u of the image not; signatures: %u held, %u not\n",
-           u->map.target_set.count, u->map.count.targets_lost,
-           u->map.db.signature_count - u->map.count.signatures_lost, u->map.count.signatures_lost);
+    printf("targets: %u held, %u of the images not; signatures: %u held, %u not\n",
+           u->map.target_set.count, u->map.count.targets_lost, signatures_held(u),
+           u->map.count.signatures_lost);
     printf("chips: %u read, %u damaged, %u without room, %u cells of lines left out\n",
            u->map.chips.count.read, u->map.chips.count.corrupt, u->map.chips.count.left_out,
            u->map.chips.count.cells_left_out);
@@ -680,7 +689,7 @@ static void print_summary(const struct sim *s)
         printf("database: not usable, nothing was drawn\n");
         return;
     }
-    if (u->map.db.target_count != 0) {
+    if (u->map.target_set.count + u->map.count.targets_lost != 0) {
         print_targets(u);
     }
     const struct lm_tile_cache *t = &u->map.tiles;

@@ -46,8 +46,8 @@ static const char script_help[] =
     "  SECONDS designate | drop                   target management switch up, down\n"
     "  SECONDS track                              the switch right: track what is at the cursor\n"
     "  SECONDS ranging                            range the ground straight ahead, or end that\n"
-    "  SECONDS mount 2|3|4 FILE                   an image comes to this place beside --db\n"
-    "  SECONDS unmount 2|3|4                      the image at this place goes\n"
+    "  SECONDS mount 1|2|3|4 FILE                 an image comes to this place: of --db, --db2 ..\n"
+    "  SECONDS unmount 1|2|3|4                    the image at this place goes\n"
     "  SECONDS picture NAME                       write DIR/NAME.png then\n";
 
 static const char *take_size(void *context, const char *text)

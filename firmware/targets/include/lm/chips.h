@@ -61,10 +61,16 @@ static inline uint32_t lm_chip_pixel(const uint32_t sum[][LM_CHIP_ROOM], uint32_
            sum[row][column];
 }
 
+/* Where a signature's chips come from: one image of several. */
+struct lm_chip_source {
+    uint64_t chips_offset; /* of the image's first chip, in the flash */
+    uint32_t number;       /* of the signature, in its image */
+};
+
 /* Cache of chips, and the read that is under way. The caller owns it. */
 struct lm_chips {
-    const struct lm_db *db; /* borrowed */
     struct lm_chip_slot slots[LM_CHIPS_MAX];
+    const struct lm_chip_source *sources;  /* borrowed: those of the signatures */
     const struct lm_signature *signatures; /* borrowed: those of the target set */
     struct lm_chip stage;  /* chip as it was read last, lent to the flash meanwhile */
     uint64_t total_m2_q32; /* cross section of the chip in `stage`, square metres */
@@ -88,10 +94,14 @@ struct lm_chip_query {
     uint32_t side_most; /* most pixels of a row after the reduction */
 };
 
-/* Empty the cache. `db` and `signatures` (checked, those of the target set) are borrowed for its
- * lifetime. */
-void lm_chips_init(struct lm_chips *c, const struct lm_db *db,
+/* Begin with an empty cache. `signatures` (checked, those of the target set) and where the chips of
+ * each come from are borrowed for its lifetime. */
+void lm_chips_init(struct lm_chips *c, const struct lm_chip_source *sources,
                    const struct lm_signature *signatures);
+
+/* Empty the cache, because the signatures are others now. No read of it may be under way; what
+ * borrowed its slots shows points. */
+void lm_chips_empty(struct lm_chips *c);
 
 /* Choose chips for the candidates, and want those that are not resident. Sets `chip` and
  * `chip_turn` of each candidate. Slots that this picture does not use may be taken for others; the

@@ -30,20 +30,23 @@ struct lm_unit_map {
                       * LM_ERR_SENSOR */
     bool is_usable;  /* false: the image cannot be used, and nothing below save db.sensor where the
                       * status is LM_ERR_SENSOR */
-    struct lm_db db; /* the image; of several the view of them (lm/images.h), and its tables,
-                      * targets and signatures are those of the first that opens */
-    struct lm_db images[LM_IMAGES_MAX + 1]; /* the finest first; the last one is for sorting */
-    uint32_t image_count;                   /* that answer; 0: not usable */
+    struct lm_db db; /* the image; of several the view of them (lm/images.h), and its tables are
+                      * those of the first place that has one */
+    struct lm_db images[LM_IMAGES_MAX + 1];    /* the finest first; the last one is for sorting */
+    struct lm_flash_part parts[LM_IMAGES_MAX]; /* what is at the board's places */
+    uint32_t image_count;                      /* that answer; 0: not usable */
     int part_status[LM_IMAGES_MAX]; /* of the board's parts of the flash, each: as open_status, or
                                      * that of lm_images_judge; LM_OK also of those it has not */
     struct lm_tile_cache tiles;
     struct lm_geoid_reader geoid;
     struct lm_target targets[LM_TARGETS_MAX];
     struct lm_signature signatures[LM_SIGNATURES_MAX];
-    struct lm_target_set target_set; /* the entries of `targets` and `signatures` that were read */
+    struct lm_chip_source chip_source[LM_SIGNATURES_MAX];
+    struct lm_target_set target_set; /* the entries of `targets` and `signatures` that were read, of
+                                      * all images, in the order of the board's places */
     struct lm_chips chips;
     struct {
-        uint32_t targets_lost; /* targets of the image that are damaged or beyond LM_TARGETS_MAX */
+        uint32_t targets_lost;    /* targets that are damaged or beyond LM_TARGETS_MAX */
         uint32_t signatures_lost; /* signatures damaged or beyond LM_SIGNATURES_MAX; their targets
                                      return no echo */
     } count;
@@ -85,14 +88,15 @@ int32_t lm_unit_map_geoid_m_q6(const struct lm_unit_map *m, struct lm_position p
 /* Number in `images` of the one that begins at an offset of the flash; image_count: none does. */
 uint32_t lm_unit_map_image_from(const struct lm_unit_map *m, uint64_t offset);
 
-/* An image has come to a place of the board's, 1..LM_IMAGES_MAX - 1, in a part of the flash where
+/* An image has come to a place of the board's, 0..LM_IMAGES_MAX - 1, in a part of the flash where
  * none was; or the one that is there goes, for a part of no bytes. Waits for the flash: what is
- * being read ends first. Tiles of all images leave the cache. part_status tells whether the image
- * was opened; LM_ERR_IO also if a read before did not end. A board lets the flash of one that has
- * gone go when lm_tile_cache_is_drained says so of `tiles`.
+ * being read ends first. Tiles of all images leave the cache; targets are read anew, and have other
+ * numbers than before. part_status tells whether the image was opened; LM_ERR_IO also if a read
+ * before did not end: then no targets are shown until the next change. A board lets the flash of
+ * one that has gone go when lm_tile_cache_is_drained says so of `tiles`.
  *
  * Returns LM_OK; or LM_ERR_RANGE, with nothing changed, if the map is not usable, for another
- * place, or if the image there is the one with the tables. */
+ * place, or if the image there is the last one. Radar and bus table stay those of the start. */
 int lm_unit_map_mount(struct lm_unit_map *m, uint32_t place, const struct lm_flash_part *part,
                       uint32_t poll_limit);
 

@@ -111,12 +111,14 @@ static inline void add_signatures(struct with_signatures *w, const struct tiny_i
         const struct lm_chip c = make_chip(k % ASPECTS, k / ASPECTS);
         memcpy(w->bytes + w->chips_at + k * LM_CHIP_BYTES, &c, sizeof c);
     }
-    uint8_t *entry = w->bytes + SECTION_TABLE + 5 * SECTION_ENTRY;
+    uint32_t sections;
+    memcpy(&sections, w->bytes + SECTION_COUNT_AT, sizeof sections);
+    uint8_t *entry = w->bytes + SECTION_TABLE + sections * SECTION_ENTRY;
     put(entry, 7, 4);
     put(entry + 8, w->head_at, 8);
     put(entry + 16, section_bytes, 8);
     put(w->bytes + 16, w->size, 8);
-    put(w->bytes + SECTION_COUNT_AT, 6, 4);
+    put(w->bytes + SECTION_COUNT_AT, sections + 1, 4);
     seal_image(w);
 }
 
@@ -127,6 +129,7 @@ struct signature_world {
     struct memory_flash flash;
     struct lm_db db;
     struct lm_signature signature;
+    struct lm_chip_source chip_source;
     struct lm_tile_cache tiles;
     struct lm_chips chips;
     uint8_t pool[32 * sizeof(struct lm_tile)] __attribute__((aligned(8)));
@@ -145,7 +148,8 @@ static inline int open_signature_world(struct signature_world *w, const struct t
         lm_db_open(&w->db, &w->flash.port, POLLS) == LM_OK &&
         lm_signature_read(&w->db, 0, &w->signature, POLLS) == LM_OK &&
         lm_tile_cache_init(&w->tiles, &w->db, w->pool, sizeof w->pool, POLLS) == LM_OK;
-    lm_chips_init(&w->chips, &w->db, &w->signature);
+    w->chip_source = (struct lm_chip_source){w->db.chips_offset, 0};
+    lm_chips_init(&w->chips, &w->chip_source, &w->signature);
     return is_open ? 0 : -1;
 }
 

@@ -152,7 +152,8 @@ TEST_WITH(a_chip_is_read_and_holds_the_power_and_the_shadow_of_its_pixels, set_u
     static const uint32_t cells_mm[] = {500, 999, 1000, 2000, 4000, 7999};
     for (int k = 0; k < 6; k++) {
         struct lm_target_candidates candidates;
-        lm_chips_init(&f->chips, &f->db, &f->signature);
+        f->chip_source = (struct lm_chip_source){f->db.chips_offset, 0};
+        lm_chips_init(&f->chips, &f->chip_source, &f->signature);
         choose(f, &t, 1, cells_mm[k], &candidates);
         assert_null(lm_chip_of(&candidates.candidate[0]));
         assert_true(serve_chips(f));

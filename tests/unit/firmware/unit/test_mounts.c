@@ -1,6 +1,8 @@
 /* Images that come and go in flight: what is drawn behind it is what a start with the same images
  * draws, and nothing of one that has gone is read any more. The flash is late, wrong, or hangs. */
 #include "check.h"
+#include "lm/image.h"
+#include "lm/radar_record.h"
 #include "unit_rig.h"
 
 #include <stdlib.h>
@@ -14,6 +16,7 @@ struct world {
     struct rig *rig;
     uint8_t *bytes;
     struct lm_flash_part parts[IMAGES];
+    struct lm_position centre; /* of the country, and of patches */
 };
 
 static struct tiny_cell trees(void *ctx, const struct tiny_place *p)
@@ -39,10 +42,10 @@ static struct tiny_image build(double gamma_db, bool is_foreign)
     return image;
 }
 
-static struct world *make_world(void)
+static struct world *make_world_of(struct rig *rig)
 {
     struct world *w = calloc(1, sizeof *w);
-    w->rig = make_rig();
+    w->rig = rig;
     struct tiny_image images[IMAGES] = {w->rig->image, build(-8, false), build(-25, false),
                                         build(-8, true)};
     size_t size = 0;
@@ -58,7 +61,23 @@ static struct world *make_world(void)
         }
     }
     memory_flash_open(&w->rig->board.flash, w->bytes, size);
+    struct lm_db db;
+    assert_int_equal(lm_db_open_part(&db, &w->rig->board.flash.port, &w->parts[0], 1000), LM_OK);
+    w->centre = (struct lm_position){db.centre_latitude, db.centre_longitude};
     return w;
+}
+
+static struct world *make_world(void)
+{
+    return make_world_of(make_rig());
+}
+
+/* Start again with what the board has at its places. */
+static void start_unit(struct world *w)
+{
+    assert_int_equal(lm_unit_init(&w->rig->unit, &w->rig->board.lent), LM_OK);
+    command(w->rig, range_10);
+    run(w->rig, 0.5);
 }
 
 /* `places`: bit n: the image n is there at the start. */
@@ -69,9 +88,7 @@ static struct world *start(uint32_t places)
         w->rig->board.lent.images[i] =
             (struct lm_flash_part){w->parts[i].offset, places >> i & 1 ? w->parts[i].bytes : 0};
     }
-    assert_int_equal(lm_unit_init(&w->rig->unit, &w->rig->board.lent), LM_OK);
-    command(w->rig, range_10);
-    run(w->rig, 0.5);
+    start_unit(w);
     return w;
 }
 
@@ -107,8 +124,7 @@ static const struct lm_control patch = {
 static uint32_t patch_of(struct world *w)
 {
     struct lm_control c = patch;
-    c.sar.centre = (struct lm_position){w->rig->unit.map.db.centre_latitude,
-                                        w->rig->unit.map.db.centre_longitude};
+    c.sar.centre = w->centre;
     command(w->rig, c);
     run(w->rig, 6);
     assert_int_equal(w->rig->unit.page.picture, LM_PICTURE_PATCH);
@@ -230,7 +246,7 @@ TEST(an_image_that_is_refused_is_told_and_the_others_are_flown)
         assert_int_equal(u->map.image_count, 2);
     }
     assert_int_equal(u->count.commands_refused, 0);
-    static const int32_t none[] = {1, 0, -1, IMAGES + 1, INT32_MIN, INT32_MAX};
+    static const int32_t none[] = {0, -1, IMAGES + 1, INT32_MIN, INT32_MAX};
     for (uint32_t i = 0; i < sizeof none / sizeof *none; i++) {
         tell(w, none[i], i % 2 * w->parts[1].bytes);
         run(w->rig, 0.002);
@@ -245,6 +261,76 @@ static bool fetch_unless_gone(void *to, const uint8_t *from, uint32_t length)
     const bool is_gone = from >= forbidden_from && from < forbidden_to;
     memcpy(to, from, is_gone ? 0 : length);
     return !is_gone;
+}
+
+/* The second and the third, without the first: those of a start with them at the first places. */
+static uint32_t patch_of_others(void)
+{
+    struct world *w = make_world();
+    struct lm_flash_part *images = w->rig->board.lent.images;
+    memset(images, 0, IMAGES * sizeof *images);
+    images[0] = w->parts[1];
+    images[1] = w->parts[2];
+    start_unit(w);
+    const uint32_t sum = patch_of(w);
+    end(w);
+    return sum;
+}
+
+TEST(the_first_image_goes_and_comes_back_and_the_last_one_stays)
+{
+    struct world *w = start(7);
+    const struct lm_unit *u = &w->rig->unit;
+    const uint32_t three = patch_of(w), others = patch_of_others();
+    assert_true(others != three);
+    goes(w, 0);
+    run(w->rig, 0.004);
+    forbid(w, 0);
+    assert_int_equal(u->map.image_count, 2);
+    assert_int_equal(u->map.db.base, w->parts[1].offset); /* it leads now */
+    assert_int_equal(patch_of(w), others);
+    assert_true((u->flags & LM_FLAG_TILE) == 0);
+    goes(w, 2);
+    run(w->rig, 0.1);
+    assert_int_equal(u->count.commands_refused, 0);
+    goes(w, 1);
+    run(w->rig, 0.1);
+    assert_int_equal(u->count.commands_refused, 1);
+    assert_int_equal(u->map.image_count, 1);
+    w->rig->board.flash.fetch = NULL;
+    comes(w, 3); /* of other classes than the one that is left */
+    run(w->rig, 0.1);
+    assert_int_equal(u->map.part_status[3], LM_ERR_TABLE);
+    goes(w, 3);
+    comes(w, 0);
+    comes(w, 2);
+    run(w->rig, 1);
+    assert_int_equal(u->map.db.base, w->parts[0].offset);
+    assert_int_equal(patch_of(w), three);
+    end(w);
+}
+
+TEST(the_radar_of_an_image_that_has_gone_is_flown_on_and_the_image_may_come_back)
+{
+    struct lm_radar radar = lm_radar_default;
+    uint8_t record[LM_RADAR_RECORD_BYTES];
+    struct rig *r = make_rig();
+    strcpy(radar.name, "ITS OWN");
+    lm_radar_pack(&radar, record);
+    assert_int_equal(tiny_image_add_section(&r->image, LM_IMAGE_RADAR, record, sizeof record), 0);
+    r->board.lent.radar = NULL;
+    struct world *w = make_world_of(r);
+    memcpy(r->board.lent.images, w->parts, 2 * sizeof *w->parts);
+    start_unit(w);
+    goes(w, 0);
+    run(w->rig, 0.1);
+    assert_int_equal(r->unit.map.image_count, 1);
+    assert_string_equal(r->unit.map.radar->name, "ITS OWN");
+    comes(w, 0);
+    run(w->rig, 0.1);
+    assert_int_equal(r->unit.map.part_status[0], LM_OK);
+    assert_int_equal(r->unit.map.image_count, 2);
+    end(w);
 }
 
 /* The first image stays mounted without its medium: the others answer. When it is back, what is
