@@ -19,11 +19,21 @@ void lm_chips_init(struct lm_chips *c, const struct lm_chip_source *sources,
     c->signatures = signatures;
 }
 
+enum { NO_SHIFT = 255 }; /* of a slot whose chip nobody wants: no key has it */
+
 void lm_chips_empty(struct lm_chips *c)
 {
-    memset(c->slots, 0, sizeof c->slots);
-    c->busy = NULL;
-    c->is_reading = false;
+    struct lm_chip_slot *const reading = c->is_reading ? c->busy : NULL;
+    for (uint32_t i = 0; i < LM_CHIPS_MAX; i++) {
+        if (&c->slots[i] != reading) {
+            memset(&c->slots[i], 0, sizeof c->slots[i]);
+        }
+    }
+    if (reading) {
+        reading->is_in_use = false;
+        reading->key.shift = NO_SHIFT;
+    }
+    c->busy = reading;
 }
 
 /* ---- choosing ---- */
@@ -297,7 +307,9 @@ static void take_read(struct lm_chips *c)
     struct lm_chip_slot *slot = c->busy;
     const struct lm_chip_key *key = &slot->key;
     c->is_reading = false;
-    if (c->read.status != LM_OK) {
+    if (key->shift == NO_SHIFT) {
+        finish(c, LM_CHIP_FREE);
+    } else if (c->read.status != LM_OK) {
         c->count.io_errors++;
         finish(c, LM_CHIP_BAD);
     } else if (lm_chip_check(&c->stage, c->sources[key->signature].number, key->aspect,

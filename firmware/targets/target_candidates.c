@@ -138,13 +138,14 @@ static struct lm_target_body body_of_live(const struct lm_target_set *set, uint3
 {
     const struct lm_live_target *t = &set->live->target[number];
     const bool is_beacon = t->kind == LM_LIVE_BEACON;
-    struct lm_target_body body = {.id = LIVE_ID + number,
-                                  .mean_rcs_dbsm_q8 = t->rcs_dbsm_q8,
-                                  .swerling = lm_live_echoes[t->kind].swerling,
-                                  .signature = (uint8_t)(t->signature - !is_beacon),
-                                  .flags =
-                                      is_beacon ? LM_TARGET_IS_BEACON : LM_TARGET_HAS_SIGNATURE};
-    if (!is_beacon && lm_target_signature(set, &body) == NULL) {
+    const uint32_t named = t->signature - 1u;
+    struct lm_target_body body = {
+        .id = LIVE_ID + number,
+        .mean_rcs_dbsm_q8 = t->rcs_dbsm_q8,
+        .swerling = lm_live_echoes[t->kind].swerling,
+        .signature = (uint8_t)(is_beacon ? t->signature : set->live_signature0 + named),
+        .flags = is_beacon ? LM_TARGET_IS_BEACON : LM_TARGET_HAS_SIGNATURE};
+    if (!is_beacon && (named >= set->live_signatures || lm_target_signature(set, &body) == NULL)) {
         body.signature = 0;
         body.flags = 0;
     }

@@ -66,30 +66,37 @@ static void read_signatures(struct lm_unit_map *m, const struct lm_db *image, ui
     }
 }
 
-/* Read targets and signatures of all images, in the order of the board's places. No tile and no
- * chip is being read, so this may wait for the flash. */
+/* Read targets and signatures of all images, in the order of the board's places. Nothing else is
+ * being read, so this may wait for the flash. */
 static void read_all_targets(struct lm_unit_map *m, uint32_t poll_limit)
 {
     m->target_set.items = m->targets;
     m->target_set.signatures = m->signatures;
     m->target_set.count = m->target_set.signature_count = 0;
+    m->target_set.live_signatures = 0;
     m->count.targets_lost = m->count.signatures_lost = 0;
     for (uint32_t place = 0; place < LM_IMAGES_MAX; place++) {
         const uint32_t i = image_of_place(m, place);
-        if (i < m->image_count) {
-            read_targets(m, &m->images[i], poll_limit);
-            read_signatures(m, &m->images[i], poll_limit);
+        if (i == m->image_count) {
+            continue;
         }
+        if (place == m->live_place) {
+            m->target_set.live_signature0 = m->target_set.signature_count;
+            m->target_set.live_signatures = signatures_held(m, &m->images[i]);
+        }
+        read_targets(m, &m->images[i], poll_limit);
+        read_signatures(m, &m->images[i], poll_limit);
     }
 }
 
 /* The flash hangs: no targets can be read, and those of before may be an image's that has gone. */
 static void lose_targets(struct lm_unit_map *m)
 {
-    m->target_set.count = 0;
-    m->count.targets_lost = 0;
+    m->target_set.count = m->target_set.signature_count = m->target_set.live_signatures = 0;
+    m->count.targets_lost = m->count.signatures_lost = 0;
     for (uint32_t i = 0; i < m->image_count; i++) {
         m->count.targets_lost += m->images[i].target_count;
+        m->count.signatures_lost += m->images[i].signature_count;
     }
 }
 
@@ -192,6 +199,7 @@ static void open_parts(struct lm_unit_map *m, const struct lm_unit_map_lent *len
         }
         m->part_status[i] = m->open_status = open_tables(m, lent, part);
         if (m->open_status == LM_OK) {
+            m->live_place = i;
             m->images[m->image_count++] = m->db;
         }
     }
@@ -280,8 +288,8 @@ int lm_unit_map_mount(struct lm_unit_map *m, uint32_t place, const struct lm_fla
                             : is_drained     ? open_further(m, part, poll_limit)
                                              : LM_ERR_IO;
     lead(m);
+    lm_chips_empty(&m->chips);
     if (is_drained) {
-        lm_chips_empty(&m->chips);
         read_all_targets(m, poll_limit);
     } else {
         lose_targets(m);

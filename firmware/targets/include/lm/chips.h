@@ -99,8 +99,8 @@ struct lm_chip_query {
 void lm_chips_init(struct lm_chips *c, const struct lm_chip_source *sources,
                    const struct lm_signature *signatures);
 
-/* Empty the cache, because the signatures are others now. No read of it may be under way; what
- * borrowed its slots shows points. */
+/* Empty the cache, because the signatures are others now. A read that is under way ends, and nobody
+ * sees what it read. What borrowed the slots shows points. */
 void lm_chips_empty(struct lm_chips *c);
 
 /* Choose chips for the candidates, and want those that are not resident. Sets `chip` and

@@ -14,13 +14,14 @@ enum {
     LM_TARGET_EXTENT_M = 512       /* more than any scatterer's distance from its target's origin */
 };
 
-/* Targets of an image, as they were read at start-up, and those that the bus moves. */
+/* Targets of the images, as they were read, and those that the bus moves. */
 struct lm_target_set {
     const struct lm_target *items;         /* borrowed; checked records */
     uint32_t count;                        /* up to 65535 */
     const struct lm_signature *signatures; /* borrowed; checked records, or 0 aspects: a lost one */
     uint32_t signature_count;
-    const struct lm_live *live; /* borrowed; NULL: none */
+    uint32_t live_signature0, live_signatures; /* first and number of those that live ones name */
+    const struct lm_live *live;                /* borrowed; NULL: none */
 };
 
 /* True if any of the set is a live one. */

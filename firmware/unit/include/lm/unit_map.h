@@ -34,7 +34,9 @@ struct lm_unit_map {
                       * those of the first place that has one */
     struct lm_db images[LM_IMAGES_MAX + 1];    /* the finest first; the last one is for sorting */
     struct lm_flash_part parts[LM_IMAGES_MAX]; /* what is at the board's places */
-    uint32_t image_count;                      /* that answer; 0: not usable */
+    uint32_t live_place;  /* whose signatures live targets name: the first that had an image at the
+                           * start; while it has none, they have their cross section alone */
+    uint32_t image_count; /* that answer; 0: not usable */
     int part_status[LM_IMAGES_MAX]; /* of the board's parts of the flash, each: as open_status, or
                                      * that of lm_images_judge; LM_OK also of those it has not */
     struct lm_tile_cache tiles;

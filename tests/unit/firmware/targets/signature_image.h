@@ -188,8 +188,11 @@ static inline bool serve_chips(struct signature_world *w)
 static inline struct lm_target_set set_with_signature(const struct signature_world *w,
                                                       const struct lm_target *t, uint32_t count)
 {
-    return (struct lm_target_set){
-        .items = t, .count = count, .signatures = &w->signature, .signature_count = 1};
+    return (struct lm_target_set){.items = t,
+                                  .count = count,
+                                  .signatures = &w->signature,
+                                  .signature_count = 1,
+                                  .live_signatures = 1};
 }
 
 /* A target that is shown by the signature. */

@@ -183,6 +183,31 @@ TEST(a_track_goes_on_with_its_target_under_another_number_and_ends_with_its_imag
     end(w);
 }
 
+/* Signature of a live target that names the first one, in the list; -1: it has none. */
+static int signature_of_live(const struct world *w)
+{
+    struct lm_live live = {.count = 1, .target[0] = {.is_there = true, .signature = 1}};
+    struct lm_target_set set = map_of(w)->target_set;
+    const struct lm_target_query here = {.position = places[0]};
+    struct lm_target_candidate candidate;
+    set.live = &live;
+    assert_true(lm_target_candidate_of(&candidate, &set, true, 0, &here));
+    return candidate.body.flags & LM_TARGET_HAS_SIGNATURE ? candidate.body.signature : -1;
+}
+
+TEST(live_targets_name_signatures_of_the_first_place_or_none)
+{
+    struct world *w = start();
+    assert_int_equal(signature_of_live(w), 0);
+    tell(w, 0, 0);
+    assert_int_equal(signature_of_live(w), -1);
+    tell(w, 0, w->parts[0].bytes);
+    assert_int_equal(signature_of_live(w), 0);
+    tell(w, 1, 0);
+    assert_int_equal(signature_of_live(w), 0);
+    end(w);
+}
+
 TEST(a_flash_that_hangs_shows_no_target_of_an_image_that_may_have_gone)
 {
     struct world *w = start();
@@ -190,11 +215,16 @@ TEST(a_flash_that_hangs_shows_no_target_of_an_image_that_may_have_gone)
     const uint32_t first = patch_of(w, 0);
     command(w->rig, (struct lm_control){.kind = LM_CONTROL_DROP});
     w->rig->board.flash.busy_polls = 1000000;
-    command(w->rig, patch_here);
+    struct lm_control there = patch_here;
+    there.sar.centre = places[1];
+    there.sar.cell_mm = 1000;
+    command(w->rig, there); /* wants a chip of the image that goes */
     run(w->rig, 0.1);
     tell(w, 1, 0);
     assert_int_equal(m->target_set.count, 0);
     assert_int_equal(m->count.targets_lost, EACH);
+    assert_int_equal(m->count.signatures_lost, 1);
+    assert_int_equal(signature_of_live(w), -1);
     w->rig->board.flash.busy_polls = 0;
     w->rig->board.flash.now.polls_left = 0;
     run(w->rig, 0.1);
