@@ -2,31 +2,46 @@
 
 #include <string.h>
 
+const char *const nm_connection_names[NM_CONNECTIONS] = {"coefficient", "intensity"};
+
 /* Table III gives EP1-EP4 five layers and two outputs and varies the last unit; EP5 is not in a
  * table: Fig. 18 compares it with EP2 and EP6 as the network of one output, so it has their layers.
  */
-#define FIVE(outputs, unit)                                                                        \
+#define FIVE(more, outputs, unit)                                                                  \
     {                                                                                              \
-        NM_INPUTS, 5, {16, 32, 64, 32, outputs}, unit                                              \
+        NM_INPUTS + (more), 5, {16, 32, 64, 32, outputs}, unit                                     \
     }
 
-const struct nm_architecture nm_architectures[NM_ARCHITECTURES] = {
-    {"EP1", NM_TWO_OUTPUTS, FIVE(2, NM_LINEAR)},
-    {"EP2", NM_TWO_OUTPUTS, FIVE(2, NM_SIGMOID)},
-    {"EP3", NM_TWO_OUTPUTS, FIVE(2, NM_TANH)},
-    {"EP4", NM_TWO_OUTPUTS, FIVE(2, NM_RELU)},
-    {"EP5", NM_ONE_OUTPUT, FIVE(1, NM_SIGMOID)},
-    {"EP6", NM_TWO_NETWORKS, FIVE(1, NM_SIGMOID)},
-    {"EP7", NM_TWO_NETWORKS, {NM_INPUTS, 4, {32, 64, 32, 1}, NM_SIGMOID}},
-    {"EP8", NM_TWO_NETWORKS, {NM_INPUTS, 6, {16, 32, 64, 32, 32, 1}, NM_SIGMOID}},
-    {"EP9", NM_TWO_NETWORKS, {NM_INPUTS_MAX, 6, {16, 32, 64, 32, 32, 1}, NM_SIGMOID}},
+/* All of them in one connection, with so many inputs more. */
+#define CONNECTED(c, more)                                                                         \
+    {                                                                                              \
+        {"EP1", NM_TWO_OUTPUTS, c, FIVE(more, 2, NM_LINEAR)},                                      \
+            {"EP2", NM_TWO_OUTPUTS, c, FIVE(more, 2, NM_SIGMOID)},                                 \
+            {"EP3", NM_TWO_OUTPUTS, c, FIVE(more, 2, NM_TANH)},                                    \
+            {"EP4", NM_TWO_OUTPUTS, c, FIVE(more, 2, NM_RELU)},                                    \
+            {"EP5", NM_ONE_OUTPUT, c, FIVE(more, 1, NM_SIGMOID)},                                  \
+            {"EP6", NM_TWO_NETWORKS, c, FIVE(more, 1, NM_SIGMOID)},                                \
+            {"EP7", NM_TWO_NETWORKS, c, {NM_INPUTS + (more), 4, {32, 64, 32, 1}, NM_SIGMOID}},     \
+            {"EP8",                                                                                \
+             NM_TWO_NETWORKS,                                                                      \
+             c,                                                                                    \
+             {NM_INPUTS + (more), 6, {16, 32, 64, 32, 32, 1}, NM_SIGMOID}},                        \
+            {"EP9",                                                                                \
+             NM_TWO_NETWORKS,                                                                      \
+             c,                                                                                    \
+             {NM_OWN_INPUTS + (more), 6, {16, 32, 64, 32, 32, 1}, NM_SIGMOID}},                    \
+    }
+
+const struct nm_architecture nm_architectures[NM_CONNECTIONS][NM_ARCHITECTURES] = {
+    CONNECTED(NM_BY_COEFFICIENT, 0),
+    CONNECTED(NM_BY_INTENSITY, 1),
 };
 
-const struct nm_architecture *nm_architecture_find(const char *name)
+const struct nm_architecture *nm_architecture_find(const char *name, enum nm_connection connection)
 {
     for (int i = 0; i < NM_ARCHITECTURES; i++) {
-        if (strcmp(nm_architectures[i].name, name) == 0) {
-            return &nm_architectures[i];
+        if (strcmp(nm_architectures[connection][i].name, name) == 0) {
+            return &nm_architectures[connection][i];
         }
     }
     return NULL;

@@ -17,7 +17,11 @@ int nm_experiment_open(struct nm_experiment *e, const struct nm_settings *settin
                        double lowest_depression_deg)
 {
     *e = (struct nm_experiment){.settings = *settings};
-    return nm_target_view_open(&e->view, &settings->setup, lowest_depression_deg);
+    if (nm_target_view_open(&e->view, &settings->setup, lowest_depression_deg) != 0) {
+        return -1;
+    }
+    e->view.connection = nm_settings_connection(settings);
+    return 0;
 }
 
 void nm_experiment_close(struct nm_experiment *e)
@@ -77,6 +81,7 @@ int nm_experiment_take(struct nm_experiment *e, const char *path)
         return -1;
     }
     e->view.known = &e->training->materials;
+    e->view.connection = e->training->model.architecture->connection;
     return 0;
 }
 

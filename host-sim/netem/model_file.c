@@ -14,6 +14,7 @@ enum { NUMBERS_A_LINE = 8 };
 static const char remedy[] = "train again or copy the file again";
 static const char *const loss_names[2] = {"mse", "mae"};
 static const char *const method_names[2] = {"adam", "sgd"};
+_Static_assert((int)NM_CONNECTIONS == 2, "read_choice takes one of two");
 
 static void write_array(FILE *out, const char *name, const double *numbers, size_t count)
 {
@@ -40,7 +41,8 @@ int nm_model_write(const struct nm_training *t, const char *path)
     }
     FILE *out = file.stream;
     const struct nm_model *m = &t->model;
-    fprintf(out, "landmass-netem 2\narchitecture %s\nmaterials", m->architecture->name);
+    fprintf(out, "landmass-netem 3\narchitecture %s\nconnection %s\nmaterials",
+            m->architecture->name, nm_connection_names[m->architecture->connection]);
     for (uint32_t i = 0; i < t->materials.count; i++) {
         fprintf(out, " %s", t->materials.names[i]);
     }
@@ -287,25 +289,41 @@ static int read_state(struct db_text_file *f, struct nm_training *t)
     return 0;
 }
 
+/* Files of version 2 are from before there was a choice. */
+static int read_architecture(struct db_text_file *f, int version,
+                             const struct nm_architecture **architecture)
+{
+    char name[8];
+    const char *text = "";
+    int connection = NM_BY_COEFFICIENT;
+    if (next_value(f, "architecture", &text) != 0) {
+        return -1;
+    }
+    snprintf(name, sizeof name, "%s", *text == ' ' ? text + 1 : text);
+    const bool is_known = nm_architecture_find(name, NM_BY_COEFFICIENT);
+    if (!is_known) {
+        return db_text_error(f, remedy, "there is no architecture `%s`", name);
+    }
+    if (version > 2 && read_choice(f, "connection", nm_connection_names, &connection) != 0) {
+        return -1;
+    }
+    *architecture = nm_architecture_find(name, (enum nm_connection)connection);
+    return 0;
+}
+
 static int read_head(struct db_text_file *f, const struct nm_architecture **architecture,
                      struct nm_materials *materials, struct nm_plan *plan)
 {
     int version;
-    const char *name = "";
-    if (read_count(f, "landmass-netem", 1, 2, &version) != 0) {
+    if (read_count(f, "landmass-netem", 1, 3, &version) != 0) {
         return -1;
     }
     if (version < 2) {
         return db_text_error(f, "train again", "a file without the names of its materials");
     }
-    if (next_value(f, "architecture", &name) != 0) {
-        return -1;
-    }
-    *architecture = *name == ' ' ? nm_architecture_find(name + 1) : NULL;
-    if (!*architecture) {
-        return db_text_error(f, remedy, "there is no architecture `%s`", name);
-    }
-    return read_materials(f, materials) == 0 ? read_plan(f, plan) : -1;
+    return read_architecture(f, version, architecture) == 0 && read_materials(f, materials) == 0
+               ? read_plan(f, plan)
+               : -1;
 }
 
 int nm_model_read(struct nm_training *t, const char *path, int cells)

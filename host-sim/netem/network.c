@@ -140,7 +140,8 @@ static void add_layer_gradient(const double *delta, const double *from, int rows
 }
 
 void nm_network_backward(const struct nm_network *net, const double *weights, const double *inputs,
-                         int rows, const double *activity, double *delta, double *gradient)
+                         int rows, const double *activity, double *delta, double *gradient,
+                         double *d_inputs)
 {
     weights += nm_network_size(net);
     gradient += nm_network_size(net);
@@ -153,9 +154,10 @@ void nm_network_backward(const struct nm_network *net, const double *weights, co
         slope(delta + here, activity + here, (size_t)rows * (size_t)to, unit_of(net, l));
         add_layer_gradient(delta + here, l > 0 ? activity + below : inputs, rows, from, to,
                            gradient);
-        if (l > 0) {
+        double *to_below = l > 0 ? delta + below : d_inputs;
+        if (to_below) {
             cblas_dgemm(CblasRowMajor, CblasNoTrans, CblasNoTrans, rows, from, to, 1, delta + here,
-                        to, weights, from, 0, delta + below, from);
+                        to, weights, from, 0, to_below, from);
         }
     }
 }

@@ -1,8 +1,10 @@
 #include "netem/paths.h"
 
+#include "bounce_order.h"
 #include "hs/error.h"
 
 #include <math.h>
+#include <stdbool.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -11,6 +13,7 @@ static const double pi = 3.14159265358979323846;
 /* Different reflections found so far: open addressing on their rounded geometry. */
 struct table {
     struct nm_reflection *rows; /* becomes the owner's */
+    struct nm_from *from;       /* likewise; NULL: equal geometry is all that counts */
     int count, capacity;
     int32_t *slots; /* -1 is free */
     uint32_t slot_count;
@@ -24,21 +27,29 @@ static uint64_t key_of(const struct nm_reflection *r)
     return i | l << 16 | t << 32 | (uint64_t)r->material << 48;
 }
 
-static uint32_t slot_of(uint64_t key, uint32_t slot_count)
+static uint32_t slot_of(uint64_t key, const struct nm_from *from, uint32_t slot_count)
 {
-    return (uint32_t)((key * 0x9e3779b97f4a7c15u) >> 32) & (slot_count - 1);
+    const uint64_t before = (uint64_t)(uint32_t)from->row[NM_BK] << 32 | (uint32_t)from->row[NM_SP];
+    const uint64_t mixed = key ^ before * 0xd6e8feb86659fd93u;
+    return (uint32_t)((mixed * 0x9e3779b97f4a7c15u) >> 32) & (slot_count - 1);
 }
 
-static int table_open(struct table *t, uint32_t most)
+static int table_open(struct table *t, uint32_t most, enum nm_connection connection)
 {
     uint32_t slots = 64;
     while (slots / 2 < most) {
         slots *= 2;
     }
-    *t = (struct table){malloc((size_t)most * sizeof *t->rows), 0, (int)most,
-                        malloc(slots * sizeof *t->slots), slots};
-    if (!t->rows || !t->slots) {
+    const bool is_chained = connection == NM_BY_INTENSITY;
+    *t = (struct table){malloc((size_t)most * sizeof *t->rows),
+                        is_chained ? malloc((size_t)most * sizeof *t->from) : NULL,
+                        0,
+                        (int)most,
+                        malloc(slots * sizeof *t->slots),
+                        slots};
+    if (!t->rows || !t->slots || (is_chained && !t->from)) {
         free(t->rows);
+        free(t->from);
         free(t->slots);
         *t = (struct table){0};
         return hs_error("paths", "trace with fewer rays", "out of memory");
@@ -47,18 +58,30 @@ static int table_open(struct table *t, uint32_t most)
     return 0;
 }
 
-static int32_t table_find(struct table *t, const struct nm_reflection *r)
+static bool is_from(const struct table *t, int32_t row, const struct nm_from *from)
 {
+    return !t->from || (t->from[row].row[NM_BK] == from->row[NM_BK] &&
+                        t->from[row].row[NM_SP] == from->row[NM_SP]);
+}
+
+static int32_t table_find(struct table *t, const struct nm_reflection *r,
+                          const struct nm_from *from)
+{
+    static const struct nm_from any = {{-1, -1}};
     const uint64_t key = key_of(r);
-    uint32_t slot = slot_of(key, t->slot_count);
+    uint32_t slot = slot_of(key, t->from ? from : &any, t->slot_count);
     while (t->slots[slot] >= 0) {
-        if (key_of(&t->rows[t->slots[slot]]) == key) {
-            return t->slots[slot];
+        const int32_t row = t->slots[slot];
+        if (key_of(&t->rows[row]) == key && is_from(t, row, from)) {
+            return row;
         }
         slot = (slot + 1) & (t->slot_count - 1);
     }
     t->slots[slot] = t->count;
     t->rows[t->count] = *r;
+    if (t->from) {
+        t->from[t->count] = *from;
+    }
     return t->count++;
 }
 
@@ -72,17 +95,22 @@ static double bisector_rad(const struct nm_reflection *r)
 }
 
 void nm_features_of(const struct nm_architecture *a, const struct nm_reflection *r,
-                    double features[NM_INPUTS_MAX])
+                    double intensity, double features[NM_INPUTS_MAX])
 {
     static const double near_rad = 0.1, one = 4;
+    const bool is_chained = a->connection == NM_BY_INTENSITY;
+    const bool is_own = a->network.inputs - is_chained != NM_INPUTS;
     double *angles = features;
-    if (a->network.inputs == NM_INPUTS) {
+    if (is_chained) {
+        features[a->network.inputs - 1] = NM_INTENSITY_SLOPE * intensity - 1;
+    }
+    if (!is_own) {
         *angles++ = r->material - 1.0;
     }
     angles[0] = 4 * r->incidence_rad / pi - 1;
     angles[1] = 2 * r->leaving_rad / pi - 1;
     angles[2] = 2 * r->turn_rad / pi - 1;
-    if (a->network.inputs != NM_INPUTS) {
+    if (is_own) {
         const double off = bisector_rad(r);
         angles[3] = 4 * off / pi - 1;
         angles[4] = exp(-off / near_rad);
@@ -143,6 +171,7 @@ static int take_ray(const struct trace_grid *grid, const struct trace_record *co
                     const uint8_t *number, struct table tables[NM_DIRECTIONS],
                     struct nm_step *steps)
 {
+    struct nm_from from = {{-1, -1}};
     while (count > 0 && cell_of(grid, way[count - 1]) < 0) {
         count--;
     }
@@ -153,8 +182,9 @@ static int take_ray(const struct trace_grid *grid, const struct trace_record *co
         const struct nm_reflection sp = {incidence, incidence, 2 * incidence,
                                          number[way[b]->material]};
         steps[b] = (struct nm_step){.cell = cell_of(grid, way[b])};
-        steps[b].row[NM_BK] = table_find(&tables[NM_BK], &bk);
-        steps[b].row[NM_SP] = b + 1 < count ? table_find(&tables[NM_SP], &sp) : -1;
+        steps[b].row[NM_BK] = table_find(&tables[NM_BK], &bk, &from);
+        steps[b].row[NM_SP] = b + 1 < count ? table_find(&tables[NM_SP], &sp, &from) : -1;
+        from = (struct nm_from){{steps[b].row[NM_BK], steps[b].row[NM_SP]}};
     }
     return count;
 }
@@ -176,7 +206,7 @@ static void take_rays(struct nm_paths *p, const struct trace_records *records,
 }
 
 int nm_paths_build(struct nm_paths *p, const struct trace_records *records,
-                   const struct nm_materials *known)
+                   const struct nm_materials *known, enum nm_connection connection)
 {
     uint8_t number[TRACE_MATERIALS_MAX];
     uint32_t total = 0;
@@ -190,6 +220,7 @@ int nm_paths_build(struct nm_paths *p, const struct trace_records *records,
     const struct trace_sensor *sensor = &records->sensor;
     const struct trace_grid *grid = &records->grid;
     *p = (struct nm_paths){
+        .connection = connection,
         .cells_across = (int)grid->cells_across,
         .cells_range = (int)grid->cells_range,
         .ray_weight = sensor->step_across_m * sensor->step_up_m / (grid->cell_m * grid->cell_m),
@@ -199,15 +230,19 @@ int nm_paths_build(struct nm_paths *p, const struct trace_records *records,
     struct table tables[NM_DIRECTIONS] = {{0}};
     int result = p->first && p->steps ? 0 : hs_error("paths", NULL, "out of memory");
     for (int d = 0; d < NM_DIRECTIONS && result == 0; d++) {
-        result = table_open(&tables[d], total + 1);
+        result = table_open(&tables[d], total + 1, connection);
     }
     if (result == 0) {
         take_rays(p, records, number, tables);
     }
     for (int d = 0; d < NM_DIRECTIONS; d++) {
         p->table[d] = tables[d].rows;
+        p->from[d] = tables[d].from;
         p->rows[d] = tables[d].count;
         free(tables[d].slots);
+    }
+    if (result == 0 && connection == NM_BY_INTENSITY) {
+        result = nm_paths_order(p);
     }
     if (result != 0) {
         nm_paths_free(p);
@@ -219,6 +254,7 @@ void nm_paths_free(struct nm_paths *p)
 {
     for (int d = 0; d < NM_DIRECTIONS; d++) {
         free(p->table[d]);
+        free(p->from[d]);
     }
     free(p->first);
     free(p->steps);
@@ -235,7 +271,7 @@ void nm_paths_render(const struct nm_paths *p, const struct nm_coefficients *c, 
             if (step->cell >= 0) {
                 image[step->cell] += power * c->bk[step->row[NM_BK]];
             }
-            if (step->row[NM_SP] >= 0) {
+            if (step->row[NM_SP] >= 0 && c->connection == NM_BY_COEFFICIENT) {
                 power *= c->sp[step->row[c->sp_by]];
             }
         }
@@ -266,9 +302,23 @@ static void ray_backward(const struct nm_step *steps, int count, double weight,
     }
 }
 
+/* Intensities are added as they are; what went on is the next network's business (netem.h). */
+static void intensities_backward(const struct nm_paths *p, const double *d_image, double *bk)
+{
+    for (int32_t s = 0; s < p->first[p->ray_count]; s++) {
+        if (p->steps[s].cell >= 0) {
+            bk[p->steps[s].row[NM_BK]] += p->ray_weight * d_image[p->steps[s].cell];
+        }
+    }
+}
+
 void nm_paths_backward(const struct nm_paths *p, const struct nm_coefficients *c,
                        const double *d_image, double *bk, double *sp)
 {
+    if (c->connection == NM_BY_INTENSITY) {
+        intensities_backward(p, d_image, bk);
+        return;
+    }
     for (int i = 0; i < p->ray_count; i++) {
         ray_backward(p->steps + p->first[i], p->first[i + 1] - p->first[i], p->ray_weight, c,
                      d_image, bk, sp);

@@ -112,7 +112,7 @@ static double learned_at(void *ctx, double degrees)
 {
     const struct law_line *line = ctx;
     const struct nm_reflection r = reflection_at(line, degrees);
-    return nm_netem_ask(line->model->architecture, line->model->values, &r, line->direction);
+    return nm_netem_ask(line->model->architecture, line->model->values, &r, line->direction, 1);
 }
 
 static void draw_law(const struct chart *c, struct law_line *line, int curve)

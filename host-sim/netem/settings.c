@@ -12,6 +12,7 @@ struct nm_settings nm_settings_default(void)
         .calibration = {.gain = NAN, .clutter = 0.05},
         .share = 0.8,
         .architecture = "EP8",
+        .connection = "coefficient",
         .loss = "mse",
         .method = "adam",
         .rate = 1e-3,
@@ -113,6 +114,11 @@ void nm_train_options(struct nm_settings *s, struct hs_option *o)
          "Tables III and IV; EP8: a network for each direction, 16-32-64-32-32-1; EP9: likewise,\n"
          "fed with an input for each material and with the distance from a mirror's angle",
          false},
+        {"connection", HS_WORD, &s->connection, 0, 0, NM_CONNECTION_WORDS,
+         "of one reflection's network with the next: coefficient: Fig. 11; intensity: Fig. 10, "
+         "what\n"
+         "a network gives is one of the next one's inputs",
+         false},
         {"loss", HS_WORD, &s->loss, 0, 0, "mse|mae", "mse: (14); mae: (13)", false},
         {"method", HS_WORD, &s->method, 0, 0, "adam|sgd", "of descent", false},
         {"rate", HS_REAL, &s->rate, 1e-9, 1e3, "R", "of the reflection networks", false},
@@ -145,7 +151,7 @@ int nm_settings_plan(const struct nm_settings *s, struct nm_plan *plan,
                      const struct nm_architecture **architecture)
 {
     int loss, method;
-    *architecture = nm_architecture_find(s->architecture);
+    *architecture = nm_architecture_find(s->architecture, nm_settings_connection(s));
     if (!*architecture) {
         return hs_error("--architecture", "give EP1 to EP9", "there is no %s", s->architecture);
     }
@@ -165,6 +171,13 @@ int nm_settings_plan(const struct nm_settings *s, struct nm_plan *plan,
         .seed = (uint64_t)s->seed,
     };
     return 0;
+}
+
+/* The table of options lets no other words pass. */
+enum nm_connection nm_settings_connection(const struct nm_settings *s)
+{
+    return strcmp(s->connection, nm_connection_names[NM_BY_INTENSITY]) == 0 ? NM_BY_INTENSITY
+                                                                            : NM_BY_COEFFICIENT;
 }
 
 struct nm_calibration nm_settings_calibration(const struct nm_settings *s)

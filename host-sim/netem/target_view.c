@@ -55,7 +55,7 @@ int nm_target_view_paths(const struct nm_target_view *v, double azimuth_deg, dou
         return -1;
     }
     int result = law ? take_law(v, &records, law) : 0;
-    result = result == 0 ? nm_paths_build(paths, &records, v->known) : -1;
+    result = result == 0 ? nm_paths_build(paths, &records, v->known, v->connection) : -1;
     trace_records_free(&records);
     return result;
 }
@@ -82,7 +82,7 @@ int nm_draw_by_law(const struct nm_paths *paths, const struct reflect_law *law, 
             values[d][r] = nm_law_ask(law, &paths->table[d][r], (enum nm_direction)d);
         }
     }
-    const struct nm_coefficients c = {values[NM_BK], values[NM_SP], NM_SP};
+    const struct nm_coefficients c = {values[NM_BK], values[NM_SP], NM_SP, NM_BY_COEFFICIENT};
     const int is_whole = values[NM_BK] && values[NM_SP];
     if (is_whole) {
         nm_paths_render(paths, &c, picture);

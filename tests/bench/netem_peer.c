@@ -37,7 +37,7 @@ static void put_paths(FILE *out, const struct nm_architecture *a, const struct n
     fwrite(&p->ray_weight, sizeof p->ray_weight, 1, out);
     for (int d = 0; d < NM_DIRECTIONS; d++) {
         for (int r = 0; r < p->rows[d]; r++) {
-            nm_features_of(a, &p->table[d][r], features);
+            nm_features_of(a, &p->table[d][r], 1, features);
             fwrite(features, sizeof *features, NM_INPUTS, out);
         }
     }
@@ -129,7 +129,8 @@ int main(int argc, char **argv)
     setup.model = "slicy";
     nm_kernel_make(setup.resolution_m, setup.cell_m, 0.2, kernel);
     if (nm_target_view_open(&view, &setup, setup.depression_deg) != 0 ||
-        nm_training_open(&t, &plan, nm_architecture_find("EP8"), kernel, (int)setup.cells) != 0) {
+        nm_training_open(&t, &plan, nm_architecture_find("EP8", NM_BY_COEFFICIENT), kernel,
+                         (int)setup.cells) != 0) {
         return 1;
     }
     const int result = run(argv[1], epochs, &view, &t);

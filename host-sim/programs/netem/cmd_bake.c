@@ -49,7 +49,8 @@ static int draw_by_networks(void *ctx, const struct trace_records *r, float *pow
     struct net_maker *maker = ctx;
     struct nm_simulator *s = &maker->training->simulator;
     struct nm_paths paths;
-    if (nm_paths_build(&paths, r, &maker->training->materials) != 0) {
+    if (nm_paths_build(&paths, r, &maker->training->materials,
+                       maker->training->model.architecture->connection) != 0) {
         return -1;
     }
     const int result = nm_simulate_picture(s, &maker->training->model, &paths);

@@ -102,10 +102,10 @@ static int make_chips(struct nm_experiment *e, struct hidden *h)
     hs_rng_seed(&rng, (uint64_t)e->settings.seed + 1);
     nm_settings_kernel(&e->settings, kernel);
     d->samples = calloc((size_t)h->chips, sizeof *d->samples);
-    if (!d->samples || nm_model_open(&model, nm_architectures, kernel, &rng) != 0) {
+    if (!d->samples || nm_model_open(&model, nm_architectures[0], kernel, &rng) != 0) {
         return hs_error("chips", NULL, "out of memory");
     }
-    int result = nm_simulator_open(&simulator, nm_architectures, (int)e->settings.setup.cells);
+    int result = nm_simulator_open(&simulator, nm_architectures[0], (int)e->settings.setup.cells);
     hs_progress_begin(&progress, "chips", (uint64_t)h->chips);
     while (result == 0 && d->count < h->chips) {
         struct nm_sample *sample = &d->samples[d->count++];
@@ -134,16 +134,18 @@ static void add_step(struct law_error errors[NM_DIRECTIONS][TRACE_MATERIALS_MAX]
                      const struct nm_model *model, const struct reflect_law *truth,
                      const struct nm_paths *p, const struct nm_step *step, double power)
 {
+    static const double power_min = 1e-9; /* which weighs nothing, and nothing can be divided by */
     for (int d = 0; d < NM_DIRECTIONS; d++) {
         const int32_t row = step->row[d];
-        if (row < 0 || (d == NM_BK && step->cell < 0)) {
+        if (row < 0 || (d == NM_BK && step->cell < 0) || power < power_min) {
             continue;
         }
         const struct nm_reflection *r = &p->table[d][row];
         struct law_error *e = &errors[d][r->material];
         const enum nm_direction direction = (enum nm_direction)d;
-        e->sum += power * fabs(nm_netem_ask(model->architecture, model->values, r, direction) -
-                               nm_law_ask(truth, r, direction));
+        const double learned =
+            nm_netem_ask(model->architecture, model->values, r, direction, power);
+        e->sum += power * fabs(learned - nm_law_ask(truth, r, direction));
         e->weight += power;
         e->count++;
     }

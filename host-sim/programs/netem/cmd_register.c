@@ -81,6 +81,7 @@ static int show_views(struct run *r, struct nm_target_view *view)
     struct hs_progress progress;
     int result = 0;
     view->known = &r->training->materials;
+    view->connection = r->training->model.architecture->connection;
     hs_progress_begin(&progress, "views", (uint64_t)r->library.views);
     for (int v = 0; v < r->library.views && result == 0; v++) {
         result = show_view(r, view, v);

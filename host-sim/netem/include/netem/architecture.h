@@ -13,7 +13,21 @@ enum { NM_INPUTS = 4 };
 /* EP9's: the three angles; the angle between the normal and the bisector of both ways, which is 0
  * where a mirror would send the ray to the radar, and how near it is to 0; and one input for each
  * material, of which one is not 0, so that materials have no order. */
-enum { NM_ANGLE_INPUTS = 5, NM_INPUTS_MAX = NM_ANGLE_INPUTS + TRACE_MATERIALS_MAX };
+enum { NM_ANGLE_INPUTS = 5, NM_OWN_INPUTS = NM_ANGLE_INPUTS + TRACE_MATERIALS_MAX };
+
+/* How one reflection's network is connected with the next one's. */
+enum nm_connection {
+    NM_BY_COEFFICIENT, /* Fig. 11: outputs are coefficients, multiplied along a ray */
+    NM_BY_INTENSITY,   /* Fig. 10: outputs are intensities; what arrives is one more input, the last
+                        */
+    NM_CONNECTIONS
+};
+extern const char *const nm_connection_names[NM_CONNECTIONS];
+
+/* The same words for a table of options. */
+#define NM_CONNECTION_WORDS "coefficient|intensity"
+
+enum { NM_INPUTS_MAX = NM_OWN_INPUTS + 1 };
 
 /* Fig. 17. */
 enum nm_wiring {
@@ -25,14 +39,15 @@ enum nm_wiring {
 struct nm_architecture {
     const char *name; /* "EP1" to "EP9" */
     enum nm_wiring wiring;
+    enum nm_connection connection;
     struct nm_network network; /* one of them, where there are two alike */
 };
 
 enum { NM_ARCHITECTURES = 9 };
-extern const struct nm_architecture nm_architectures[NM_ARCHITECTURES];
+extern const struct nm_architecture nm_architectures[NM_CONNECTIONS][NM_ARCHITECTURES];
 
 /* NULL when there is no such name. */
-const struct nm_architecture *nm_architecture_find(const char *name);
+const struct nm_architecture *nm_architecture_find(const char *name, enum nm_connection connection);
 
 /* Weights of all its networks together; those of the echo (BK) come first. */
 size_t nm_architecture_size(const struct nm_architecture *a);

@@ -1,5 +1,5 @@
 /* NetEM: step 3 with networks, that is the reflection coefficients of every reflection of a
- * picture. */
+ * picture, or the intensities that leave it: enum nm_connection. */
 #ifndef NETEM_H
 #define NETEM_H
 
@@ -8,14 +8,15 @@
 /* Scratch that grows to the largest picture seen; zeroed before its first use. */
 struct nm_netem {
     const struct nm_architecture *architecture; /* borrowed */
-    double *features[NM_DIRECTIONS], *activity[NM_DIRECTIONS], *delta[NM_DIRECTIONS];
-    double
-        *split[2 * NM_DIRECTIONS]; /* outputs of one network taken apart, and their derivatives */
-    size_t feature_capacity[NM_DIRECTIONS], capacity[NM_DIRECTIONS], split_capacity;
+    double *features[NM_DIRECTIONS], *d_features[NM_DIRECTIONS];
+    double *activity[NM_DIRECTIONS], *delta[NM_DIRECTIONS];
+    double *out[NM_DIRECTIONS], *d_out[NM_DIRECTIONS]; /* by row: outputs and their derivatives */
+    size_t capacity[NM_DIRECTIONS];                    /* rows */
 };
 
 /* Coefficients of all rows of `paths` from `weights` (nm_architecture_size numbers). They stay good
- * until the next call. Returns 0, or -1 out of memory with the error reported. */
+ * until the next call. Returns 0, or -1 with the error reported: out of memory, or paths that were
+ * not built for networks of this connection. */
 int nm_netem_forward(struct nm_netem *em, const double *weights, const struct nm_paths *paths,
                      struct nm_coefficients *coefficients);
 
@@ -25,9 +26,11 @@ void nm_netem_backward(struct nm_netem *em, const double *weights, const struct 
                        const struct nm_coefficients *coefficients, const double *d_image,
                        double *gradient);
 
-/* One reflection's coefficient in one direction. */
+/* One reflection's coefficient in one direction. Networks of NM_BY_INTENSITY have one for each
+ * `intensity` that meets it, (0, 1]: theirs over that. */
 double nm_netem_ask(const struct nm_architecture *architecture, const double *weights,
-                    const struct nm_reflection *reflection, enum nm_direction direction);
+                    const struct nm_reflection *reflection, enum nm_direction direction,
+                    double intensity);
 
 /* Harmless on a zeroed struct. */
 void nm_netem_free(struct nm_netem *em);

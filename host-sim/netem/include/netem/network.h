@@ -42,9 +42,11 @@ const double *nm_network_forward(const struct nm_network *net, const double *wei
 
 /* After the forward pass: adds to `gradient`, laid out as the weights, the derivative of a loss by
  * each weight. `delta` has the size of `activity`; on entry the place of its outputs holds the
- * derivative of the loss by each output, on return all of it is spent. */
+ * derivative of the loss by each output, on return all of it is spent. `d_inputs`, rows x
+ * net->inputs, receives the derivative by each input; NULL: nobody asks. */
 void nm_network_backward(const struct nm_network *net, const double *weights, const double *inputs,
-                         int rows, const double *activity, double *delta, double *gradient);
+                         int rows, const double *activity, double *delta, double *gradient,
+                         double *d_inputs);
 
 /* Index of the first output in an array laid out as the activities. */
 size_t nm_network_output_offset(const struct nm_network *net, int rows);

@@ -14,7 +14,7 @@ struct nm_settings {
     double gain; /* 0: by the clutter */
     double share;
     /* training */
-    const char *architecture, *loss, *method;
+    const char *architecture, *connection, *loss, *method;
     double rate, pix_rate, momentum;
     long batch, pretrain, epochs, pix_epochs, reach_px, seed;
 };
@@ -24,7 +24,7 @@ enum {
     NM_LAW_OPTIONS = 4,
     NM_TARGET_OPTIONS = NM_VIEW_OPTIONS + NM_LAW_OPTIONS + 1,
 };
-enum { NM_CHIP_OPTIONS = 8, NM_TRAIN_OPTIONS = 12 };
+enum { NM_CHIP_OPTIONS = 8, NM_TRAIN_OPTIONS = 13 };
 
 /* The defaults that --help names. */
 struct nm_settings nm_settings_default(void);
@@ -42,6 +42,7 @@ void nm_train_options(struct nm_settings *s, struct hs_option *o);
  * error reported. */
 int nm_settings_plan(const struct nm_settings *s, struct nm_plan *plan,
                      const struct nm_architecture **architecture);
+enum nm_connection nm_settings_connection(const struct nm_settings *s);
 struct nm_calibration nm_settings_calibration(const struct nm_settings *s);
 
 /* The fixed kernel of these settings, NM_LARGE wide. */

@@ -10,7 +10,8 @@ struct nm_target_view {
     struct setup setup; /* borrows what the command line lent it */
     struct scene scene; /* owned */
     const struct nm_materials
-        *known; /* borrowed: those of a training; NULL: as the scene has them */
+        *known;                    /* borrowed: those of a training; NULL: as the scene has them */
+    enum nm_connection connection; /* of the networks that the paths are for */
 };
 
 /* The model on its ground; `lowest_depression_deg` is the flattest look that will be asked for.

@@ -1,6 +1,6 @@
 /* The derivative that training follows is that of the loss: every group of values of every network,
- * through multiplication along the bounces, the sum in the cells, convolution, ReLU and tanh,
- * beside finite differences. */
+ * through multiplication along the bounces or from network to network, the sum in the cells,
+ * convolution, ReLU and tanh, beside finite differences. */
 #include "check.h"
 #include "facets.h"
 #include "netem/loss.h"
@@ -23,6 +23,11 @@ struct bench {
     double *gradient;
 };
 
+static const struct nm_architecture *coefficient(const char *name)
+{
+    return nm_architecture_find(name, NM_BY_COEFFICIENT);
+}
+
 static void open_bench(struct bench *b, const struct nm_architecture *architecture)
 {
     struct hs_rng rng;
@@ -33,7 +38,7 @@ static void open_bench(struct bench *b, const struct nm_architecture *architectu
         kernel[i] = 0.3 * exp(-(x * x + 2 * y * y + x) / 6);
     }
     facets_make(&b->records, 5, SIDE, CELLS);
-    assert_int_equal(nm_paths_build(&b->paths, &b->records, NULL), 0);
+    assert_int_equal(nm_paths_build(&b->paths, &b->records, NULL, architecture->connection), 0);
     assert_int_equal(nm_model_open(&b->model, architecture, kernel, &rng), 0);
     assert_int_equal(nm_simulator_open(&b->simulator, architecture, CELLS), 0);
     assert_int_equal(nm_picture_open(&b->real, SIDE + 3, SIDE + 1), 0);
@@ -97,13 +102,15 @@ static void check_group(struct bench *b, size_t first, size_t count, const char 
         scale = fmax(scale, fabs(b->gradient[i]));
     }
     if (scale < 1e-12) {
-        fail_msg("%s: %s has no gradient", b->model.architecture->name, name);
+        fail_msg("%s by %s: %s has no gradient", b->model.architecture->name,
+                 nm_connection_names[b->model.architecture->connection], name);
     }
     const size_t stride = count > PER_GROUP ? count / PER_GROUP : 1;
     for (size_t i = first; i < first + count; i += stride) {
         if (!agrees(b, i, scale)) {
-            fail_msg("%s: %s, value %zu: %g, by differences %g", b->model.architecture->name, name,
-                     i - first, b->gradient[i], difference(b, i, 1e-6));
+            fail_msg("%s by %s: %s, value %zu: %g, by differences %g", b->model.architecture->name,
+                     nm_connection_names[b->model.architecture->connection], name, i - first,
+                     b->gradient[i], difference(b, i, 1e-6));
         }
     }
 }
@@ -140,10 +147,11 @@ static void check_pix(struct bench *b)
 #undef GROUP
 }
 
-static void check_architecture(const char *name, int is_pix_trainable, enum nm_loss_kind kind)
+static void check_architecture(const struct nm_architecture *a, int is_pix_trainable,
+                               enum nm_loss_kind kind)
 {
     struct bench b = {.kind = kind};
-    open_bench(&b, nm_architecture_find(name));
+    open_bench(&b, a);
     b.model.is_pix_trainable = is_pix_trainable;
     loss_of(&b);
     nm_simulator_backward(&b.simulator, &b.model, &b.paths, false, b.gradient);
@@ -156,27 +164,79 @@ static void check_architecture(const char *name, int is_pix_trainable, enum nm_l
 
 TEST(every_group_of_every_network_has_the_right_gradient)
 {
-    for (int i = 0; i < NM_ARCHITECTURES; i++) {
-        check_architecture(nm_architectures[i].name, 0, NM_MSE);
+    for (int i = 0; i < NM_CONNECTIONS * NM_ARCHITECTURES; i++) {
+        check_architecture(&nm_architectures[i / NM_ARCHITECTURES][i % NM_ARCHITECTURES], 0,
+                           NM_MSE);
     }
+}
+
+/* One ray after the other, each network asked by itself with what the one before gave. */
+static void draw_ray_by_ray(struct bench *b, double *image)
+{
+    const struct nm_model *m = &b->model;
+    const struct nm_paths *p = &b->paths;
+    const int is_joint = m->architecture->wiring == NM_TWO_OUTPUTS;
+    for (int i = 0; i < p->ray_count; i++) {
+        double arriving = 1;
+        for (int32_t s = p->first[i]; s < p->first[i + 1]; s++) {
+            const struct nm_step *step = &p->steps[s];
+            const struct nm_reflection *bk = &p->table[NM_BK][step->row[NM_BK]];
+            if (step->cell >= 0) {
+                image[step->cell] += p->ray_weight * arriving *
+                                     nm_netem_ask(m->architecture, m->values, bk, NM_BK, arriving);
+            }
+            if (step->row[NM_SP] >= 0) {
+                const struct nm_reflection *sp = is_joint ? bk : &p->table[NM_SP][step->row[NM_SP]];
+                arriving *= nm_netem_ask(m->architecture, m->values, sp, NM_SP, arriving);
+            }
+        }
+    }
+}
+
+TEST(what_a_network_gives_is_what_the_next_one_gets)
+{
+    static const char *const names[] = {"EP2", "EP5", "EP8", "EP9"};
+    for (size_t n = 0; n < sizeof names / sizeof names[0]; n++) {
+        struct bench b = {.kind = NM_MSE};
+        double image[CELLS * CELLS] = {0}, most = 0;
+        open_bench(&b, nm_architecture_find(names[n], NM_BY_INTENSITY));
+        draw_ray_by_ray(&b, image);
+        assert_int_equal(nm_simulate_picture(&b.simulator, &b.model, &b.paths), 0);
+        for (int i = 0; i < CELLS * CELLS; i++) {
+            most = fmax(most, image[i]);
+            assert_true(fabs(b.simulator.picture[i] - image[i]) <= 1e-12);
+        }
+        assert_true(most > 0.1);
+        close_bench(&b);
+    }
+}
+
+TEST(paths_for_coefficients_are_not_taken_for_intensities)
+{
+    struct bench b = {.kind = NM_MSE};
+    open_bench(&b, nm_architecture_find("EP8", NM_BY_INTENSITY));
+    nm_paths_free(&b.paths);
+    assert_int_equal(nm_paths_build(&b.paths, &b.records, NULL, NM_BY_COEFFICIENT), 0);
+    assert_int_equal(nm_simulate_picture(&b.simulator, &b.model, &b.paths), -1);
+    close_bench(&b);
 }
 
 TEST(the_gradient_reaches_the_networks_through_the_trainable_pixels)
 {
-    check_architecture("EP8", 1, NM_MSE);
-    check_architecture("EP2", 1, NM_MSE);
+    check_architecture(coefficient("EP8"), 1, NM_MSE);
+    check_architecture(coefficient("EP2"), 1, NM_MSE);
 }
 
 TEST(the_absolute_error_has_its_own_gradient)
 {
-    check_architecture("EP8", 0, NM_MAE);
-    check_architecture("EP7", 1, NM_MAE);
+    check_architecture(coefficient("EP8"), 0, NM_MAE);
+    check_architecture(coefficient("EP7"), 1, NM_MAE);
 }
 
 TEST(frozen_networks_get_no_gradient_and_the_pixels_get_all_of_it)
 {
     struct bench b = {.kind = NM_MSE};
-    open_bench(&b, nm_architecture_find("EP8"));
+    open_bench(&b, coefficient("EP8"));
     b.model.is_pix_trainable = true;
     loss_of(&b);
     nm_simulator_backward(&b.simulator, &b.model, &b.paths, true, b.gradient);
@@ -192,7 +252,7 @@ TEST(frozen_networks_get_no_gradient_and_the_pixels_get_all_of_it)
 TEST(the_picture_of_step_4_has_the_right_gradient_too)
 {
     struct bench b = {.kind = NM_MSE};
-    open_bench(&b, nm_architecture_find("EP8"));
+    open_bench(&b, coefficient("EP8"));
     struct nm_simulator *s = &b.simulator;
     struct nm_picture aim;
     assert_int_equal(nm_picture_open(&aim, CELLS, CELLS), 0);

@@ -262,6 +262,42 @@ TEST(what_was_learned_can_be_baked)
     assert_int_equal(support_run("test ! -e %s/none.sig", folder), 0);
 }
 
+/* All that takes a training takes one whose networks hand intensities on, and resumes no other. */
+TEST(networks_that_hand_intensities_on_go_all_the_way)
+{
+    const char *b = support_build_dir();
+    assert_int_equal(support_run(RECOVER " --connection intensity", b, folder, "handed"), 0);
+    assert_int_equal(support_run(RECOVER " --connection sideways", b, folder, "none"), 2);
+    assert_int_equal(support_run(RECOVER " --resume", b, folder, "handed"), 1);
+    assert_int_equal(support_run(RECOVER " --resume --connection intensity", b, folder, "handed"),
+                     0);
+    assert_int_equal(support_run("%s/bin/landmass-netem simulate --model slicy --cells 64 --rays 1 "
+                                 "--training %s/handed/training.netem --azimuth 30 --views 2 "
+                                 "--out %s/handed-chips",
+                                 b, folder, folder),
+                     0);
+    assert_int_equal(
+        support_run("cd %s/handed-chips && for a in 030 210; do echo $a.00.csv $a 15 0 0 1 "
+                    "validation; done > list && sed -i '1s/validation/training/' list",
+                    folder),
+        0);
+    assert_int_equal(support_run("%s/bin/landmass-netem score --model slicy --cells 64 --rays 1 "
+                                 "--chips %s/handed-chips/list --training "
+                                 "%s/handed/training.netem --out %s/handed-scores | "
+                                 "grep 'learned   mse 0.000000'",
+                                 b, folder, folder, folder),
+                     0);
+    assert_int_equal(support_run("%s/bin/landmass-netem bake --model slicy --rays 1 --aspects 3 "
+                                 "--depressions 30 --training %s/handed/training.netem --out "
+                                 "%s/handed.sig && ! cmp -s %s/handed.sig %s/learned.sig",
+                                 b, folder, folder, folder, folder),
+                     0);
+    assert_int_equal(support_run("%s/bin/landmass-netem plot --training "
+                                 "%s/handed/training.netem --out %s/handed-plot",
+                                 b, folder, folder),
+                     0);
+}
+
 /* The chips of the real T-72: found, learned for a moment, and scored. */
 TEST(real_chips_go_all_the_way)
 {
