@@ -213,8 +213,8 @@ double nm_netem_ask(const struct nm_architecture *a, const double *weights,
 {
     double features[NM_INPUTS_MAX], activity[ROW_ACTIVITY_MAX];
     nm_features_of(a, reflection, intensity, features);
-    const double *out =
-        nm_network_forward(&a->network, weights + weights_of(a, direction), features, 1, activity);
+    const double *out = nm_network_forward(&a->network, weights + weights_of(a, (int)direction),
+                                           features, 1, activity);
     return out[a->wiring == NM_TWO_OUTPUTS ? direction : 0] / (is_chained(a) ? intensity : 1);
 }
 
