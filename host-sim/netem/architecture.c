@@ -12,24 +12,29 @@ const char *const nm_connection_names[NM_CONNECTIONS] = {"coefficient", "intensi
         NM_INPUTS + (more), 5, {16, 32, 64, 32, outputs}, unit                                     \
     }
 
+#define SIX(inputs)                                                                                \
+    {                                                                                              \
+        inputs, 6, {16, 32, 64, 32, 32, 1}, NM_SIGMOID                                             \
+    }
+
 /* All of them in one connection, with so many inputs more. */
 #define CONNECTED(c, more)                                                                         \
     {                                                                                              \
-        {"EP1", NM_TWO_OUTPUTS, c, FIVE(more, 2, NM_LINEAR)},                                      \
-            {"EP2", NM_TWO_OUTPUTS, c, FIVE(more, 2, NM_SIGMOID)},                                 \
-            {"EP3", NM_TWO_OUTPUTS, c, FIVE(more, 2, NM_TANH)},                                    \
-            {"EP4", NM_TWO_OUTPUTS, c, FIVE(more, 2, NM_RELU)},                                    \
-            {"EP5", NM_ONE_OUTPUT, c, FIVE(more, 1, NM_SIGMOID)},                                  \
-            {"EP6", NM_TWO_NETWORKS, c, FIVE(more, 1, NM_SIGMOID)},                                \
-            {"EP7", NM_TWO_NETWORKS, c, {NM_INPUTS + (more), 4, {32, 64, 32, 1}, NM_SIGMOID}},     \
-            {"EP8",                                                                                \
+        {"EP1", NM_TWO_OUTPUTS, c, NM_AS_NUMBER, FIVE(more, 2, NM_LINEAR)},                        \
+            {"EP2", NM_TWO_OUTPUTS, c, NM_AS_NUMBER, FIVE(more, 2, NM_SIGMOID)},                   \
+            {"EP3", NM_TWO_OUTPUTS, c, NM_AS_NUMBER, FIVE(more, 2, NM_TANH)},                      \
+            {"EP4", NM_TWO_OUTPUTS, c, NM_AS_NUMBER, FIVE(more, 2, NM_RELU)},                      \
+            {"EP5", NM_ONE_OUTPUT, c, NM_AS_NUMBER, FIVE(more, 1, NM_SIGMOID)},                    \
+            {"EP6", NM_TWO_NETWORKS, c, NM_AS_NUMBER, FIVE(more, 1, NM_SIGMOID)},                  \
+            {"EP7",                                                                                \
              NM_TWO_NETWORKS,                                                                      \
              c,                                                                                    \
-             {NM_INPUTS + (more), 6, {16, 32, 64, 32, 32, 1}, NM_SIGMOID}},                        \
-            {"EP9",                                                                                \
-             NM_TWO_NETWORKS,                                                                      \
-             c,                                                                                    \
-             {NM_OWN_INPUTS + (more), 6, {16, 32, 64, 32, 32, 1}, NM_SIGMOID}},                    \
+             NM_AS_NUMBER,                                                                         \
+             {NM_INPUTS + (more), 4, {32, 64, 32, 1}, NM_SIGMOID}},                                \
+            {"EP8", NM_TWO_NETWORKS, c, NM_AS_NUMBER, SIX(NM_INPUTS + (more))},                    \
+            {"EP9", NM_TWO_NETWORKS, c, NM_AS_NAME, SIX(NM_OWN_INPUTS + (more))},                  \
+            {"EP10", NM_TWO_NETWORKS, c, NM_AS_SURFACE,                                            \
+             SIX(NM_ANGLE_INPUTS + NM_SURFACE_INPUTS + (more))},                                   \
     }
 
 const struct nm_architecture nm_architectures[NM_CONNECTIONS][NM_ARCHITECTURES] = {

@@ -6,12 +6,23 @@
 #include "hs/report.h"
 #include "netem/model_file.h"
 #include "netem/report.h"
+#include "netem/surfaces.h"
 
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <time.h>
 #include <unistd.h>
+
+static int take_materials(struct nm_experiment *e, bool has_surfaces)
+{
+    const struct scene *s = &e->view.scene;
+    e->materials = (struct nm_materials){.count = s->material_count};
+    memcpy(e->materials.names, s->materials, sizeof e->materials.names);
+    return has_surfaces
+               ? nm_surfaces_of(&e->settings.setup, s->materials, s->material_count, &e->materials)
+               : 0;
+}
 
 int nm_experiment_open(struct nm_experiment *e, const struct nm_settings *settings,
                        double lowest_depression_deg)
@@ -21,7 +32,14 @@ int nm_experiment_open(struct nm_experiment *e, const struct nm_settings *settin
         return -1;
     }
     e->view.connection = nm_settings_connection(settings);
-    return 0;
+    e->view.known = &e->materials;
+    const struct nm_architecture *a =
+        nm_architecture_find(settings->architecture, e->view.connection);
+    const int result = take_materials(e, a && a->material == NM_AS_SURFACE);
+    if (result != 0) {
+        nm_target_view_close(&e->view);
+    }
+    return result;
 }
 
 void nm_experiment_close(struct nm_experiment *e)
@@ -48,13 +66,6 @@ static int make_training(struct nm_experiment *e)
     return e->training ? 0 : hs_error("training", NULL, "out of memory");
 }
 
-static struct nm_materials materials_of(const struct scene *s)
-{
-    struct nm_materials m = {.count = s->material_count};
-    memcpy(m.names, s->materials, sizeof m.names);
-    return m;
-}
-
 static int begin(struct nm_experiment *e, const char *path)
 {
     double kernel[NM_LARGE * NM_LARGE];
@@ -70,14 +81,30 @@ static int begin(struct nm_experiment *e, const char *path)
             0) {
         return -1;
     }
-    e->training->materials = materials_of(&e->view.scene);
+    e->training->materials = e->materials;
     return 0;
+}
+
+static int read_training(struct nm_experiment *e, const char *path)
+{
+    return make_training(e) == 0 ? nm_model_read(e->training, path, (int)e->settings.setup.cells)
+                                 : -1;
+}
+
+/* Materials that a training does not know by name, it may know by what they are made of. */
+static int meet_materials(struct nm_experiment *e)
+{
+    return take_materials(e, true) == 0 ? nm_surfaces_meet(&e->training->materials, &e->materials,
+                                                           e->settings.setup.materials != NULL)
+                                        : -1;
 }
 
 int nm_experiment_take(struct nm_experiment *e, const char *path)
 {
-    if (make_training(e) != 0 ||
-        nm_model_read(e->training, path, (int)e->settings.setup.cells) != 0) {
+    if (read_training(e, path) != 0) {
+        return -1;
+    }
+    if (e->training->model.architecture->material == NM_AS_SURFACE && meet_materials(e) != 0) {
         return -1;
     }
     e->view.known = &e->training->materials;
@@ -93,25 +120,25 @@ static bool is_same_plan(const struct nm_plan *a, const struct nm_plan *b)
            memcmp(a->epochs, b->epochs, sizeof a->epochs) == 0;
 }
 
-/* The chips were traced before: with the scene's numbers of materials. */
-static bool has_materials(const struct nm_training *t, const struct scene *s)
+/* The chips were traced before: with the model's numbers of materials, and their surfaces. */
+static bool has_materials(const struct nm_training *t, const struct nm_materials *m)
 {
-    bool is_same = t->materials.count == s->material_count;
-    for (uint32_t i = 0; is_same && i < s->material_count; i++) {
-        is_same = strcmp(t->materials.names[i], s->materials[i]) == 0;
+    bool is_same = t->materials.count == m->count;
+    for (uint32_t i = 0; is_same && i < m->count; i++) {
+        is_same = strcmp(t->materials.names[i], m->names[i]) == 0;
     }
-    return is_same;
+    return is_same && (t->model.architecture->material != NM_AS_SURFACE ||
+                       memcmp(t->materials.surfaces, m->surfaces, sizeof m->surfaces) == 0);
 }
 
 static int go_on(struct nm_experiment *e, const char *path)
 {
     const struct nm_architecture *architecture;
     struct nm_plan plan;
-    if (nm_settings_plan(&e->settings, &plan, &architecture) != 0 ||
-        nm_experiment_take(e, path) != 0) {
+    if (nm_settings_plan(&e->settings, &plan, &architecture) != 0 || read_training(e, path) != 0) {
         return -1;
     }
-    if (!has_materials(e->training, &e->view.scene)) {
+    if (!has_materials(e->training, &e->materials)) {
         return hs_error(path, "give the model of its beginning",
                         "was begun with a model of other materials");
     }
@@ -178,9 +205,10 @@ int nm_experiment_plot(const struct nm_training *t, const char *folder, int mate
         hs_output_path(kernels, sizeof kernels, folder, "kernels.png") != 0) {
         return -1;
     }
-    const bool is_drawn = nm_report_losses(loss, "loss by epoch", &curve, 1) == 0 &&
-                          nm_report_specular(specular, &t->model, material_count, truth) == 0 &&
-                          nm_report_back(back, &t->model, material_count, truth) == 0 &&
-                          nm_report_kernels(kernels, &t->model) == 0;
+    const bool is_drawn =
+        nm_report_losses(loss, "loss by epoch", &curve, 1) == 0 &&
+        nm_report_specular(specular, &t->model, &t->materials, material_count, truth) == 0 &&
+        nm_report_back(back, &t->model, &t->materials, material_count, truth) == 0 &&
+        nm_report_kernels(kernels, &t->model) == 0;
     return is_drawn ? 0 : -1;
 }

@@ -47,6 +47,12 @@ int nm_model_write(const struct nm_training *t, const char *path)
         fprintf(out, " %s", t->materials.names[i]);
     }
     fputc('\n', out);
+    for (uint32_t i = 0; m->architecture->material == NM_AS_SURFACE && i < t->materials.count;
+         i++) {
+        const struct nm_surface *s = &t->materials.surfaces[i];
+        fprintf(out, "surface %a %a %a %a\n", s->permittivity, s->loss, s->rms_height_m,
+                s->correlation_m);
+    }
     write_plan(out, &t->plan);
     fprintf(out, "random %" PRIx64 " %" PRIx64 " %" PRIx64 " %" PRIx64 "\n", t->rng.s[0],
             t->rng.s[1], t->rng.s[2], t->rng.s[3]);
@@ -168,6 +174,23 @@ static int read_materials(struct db_text_file *f, struct nm_materials *m)
             }
         }
         text += 1 + length;
+    }
+    return 0;
+}
+
+/* A line for each material, within what a file for --materials may say. */
+static int read_surfaces(struct db_text_file *f, struct nm_materials *m)
+{
+    for (uint32_t i = 0; i < m->count; i++) {
+        double x[4];
+        if (read_numbers(f, "surface", x, 4) != 0) {
+            return -1;
+        }
+        if (!(x[0] >= 1 && x[0] <= 1e9 && x[1] >= 0 && x[1] <= 1e9 && x[2] >= 0 && x[2] <= 1 &&
+              x[3] >= 0 && x[3] <= 1e3)) {
+            return db_text_error(f, remedy, "the surface of %s is none that can be", m->names[i]);
+        }
+        m->surfaces[i] = (struct nm_surface){x[0], x[1], x[2], x[3]};
     }
     return 0;
 }
@@ -321,9 +344,11 @@ static int read_head(struct db_text_file *f, const struct nm_architecture **arch
     if (version < 2) {
         return db_text_error(f, "train again", "a file without the names of its materials");
     }
-    return read_architecture(f, version, architecture) == 0 && read_materials(f, materials) == 0
-               ? read_plan(f, plan)
-               : -1;
+    if (read_architecture(f, version, architecture) != 0 || read_materials(f, materials) != 0 ||
+        ((*architecture)->material == NM_AS_SURFACE && read_surfaces(f, materials) != 0)) {
+        return -1;
+    }
+    return read_plan(f, plan);
 }
 
 int nm_model_read(struct nm_training *t, const char *path, int cells)

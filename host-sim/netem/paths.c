@@ -3,6 +3,7 @@
 #include "bounce_order.h"
 #include "hs/error.h"
 
+#include <complex.h>
 #include <math.h>
 #include <stdbool.h>
 #include <stdlib.h>
@@ -94,28 +95,51 @@ static double bisector_rad(const struct nm_reflection *r)
     return both > 1e-9 ? acos(fmax(fmin(along / both, 1), -1)) : 0;
 }
 
+/* Each of them -1..1 for whatever may be: power that a smooth face reflects square on, angle of the
+ * permittivity in its plane, and the heights' two lengths beside what is rough to an X band radar.
+ */
+static void surface_features(const struct nm_surface *s, double features[NM_SURFACE_INPUTS])
+{
+    static const double rough_m = 1e-3, wide_m = 0.02;
+    const double complex e = s->permittivity - s->loss * I;
+    const double reflected = cabs((csqrt(e) - 1) / (csqrt(e) + 1));
+    features[0] = 2 * reflected * reflected - 1;
+    features[1] = 4 * atan2(s->loss, s->permittivity) / pi - 1;
+    features[2] = 2 * s->rms_height_m / (s->rms_height_m + rough_m) - 1;
+    features[3] = 2 * s->correlation_m / (s->correlation_m + wide_m) - 1;
+}
+
+static void own_features(const struct nm_architecture *a, const struct nm_reflection *r,
+                         double *features)
+{
+    static const double near_rad = 0.1, one = 4;
+    const double off = bisector_rad(r);
+    features[3] = 4 * off / pi - 1;
+    features[4] = exp(-off / near_rad);
+    features += NM_ANGLE_INPUTS;
+    if (a->material == NM_AS_SURFACE) {
+        surface_features(&r->surface, features);
+        return;
+    }
+    memset(features, 0, TRACE_MATERIALS_MAX * sizeof *features);
+    features[r->material] = one;
+}
+
 void nm_features_of(const struct nm_architecture *a, const struct nm_reflection *r,
                     double intensity, double features[NM_INPUTS_MAX])
 {
-    static const double near_rad = 0.1, one = 4;
-    const bool is_chained = a->connection == NM_BY_INTENSITY;
-    const bool is_own = a->network.inputs - is_chained != NM_INPUTS;
     double *angles = features;
-    if (is_chained) {
+    if (a->connection == NM_BY_INTENSITY) {
         features[a->network.inputs - 1] = NM_INTENSITY_SLOPE * intensity - 1;
     }
-    if (!is_own) {
+    if (a->material == NM_AS_NUMBER) {
         *angles++ = r->material - 1.0;
     }
     angles[0] = 4 * r->incidence_rad / pi - 1;
     angles[1] = 2 * r->leaving_rad / pi - 1;
     angles[2] = 2 * r->turn_rad / pi - 1;
-    if (is_own) {
-        const double off = bisector_rad(r);
-        angles[3] = 4 * off / pi - 1;
-        angles[4] = exp(-off / near_rad);
-        memset(features + NM_ANGLE_INPUTS, 0, TRACE_MATERIALS_MAX * sizeof *features);
-        features[NM_ANGLE_INPUTS + r->material] = one;
+    if (a->material != NM_AS_NUMBER) {
+        own_features(a, r, features);
     }
 }
 
@@ -166,9 +190,15 @@ static int32_t cell_of(const struct trace_grid *grid, const struct trace_record 
     return r->flags & TRACE_BLOCKED ? -1 : trace_cell(grid, r->across_m, r->range_m);
 }
 
+/* By a record's material. */
+struct numbered {
+    uint8_t number[TRACE_MATERIALS_MAX];
+    struct nm_surface surface[TRACE_MATERIALS_MAX];
+};
+
 /* The ray's steps up to its last echo in the picture; returns their number. */
 static int take_ray(const struct trace_grid *grid, const struct trace_record *const *way, int count,
-                    const uint8_t *number, struct table tables[NM_DIRECTIONS],
+                    const struct numbered *materials, struct table tables[NM_DIRECTIONS],
                     struct nm_step *steps)
 {
     struct nm_from from = {{-1, -1}};
@@ -177,10 +207,12 @@ static int take_ray(const struct trace_grid *grid, const struct trace_record *co
     }
     for (int b = 0; b < count; b++) {
         const double incidence = (double)way[b]->incidence_rad;
+        const uint8_t material = way[b]->material;
+        const int number = materials->number[material];
+        const struct nm_surface surface = materials->surface[material];
         const struct nm_reflection bk = {incidence, (double)way[b]->echo_rad,
-                                         (double)way[b]->turn_rad, number[way[b]->material]};
-        const struct nm_reflection sp = {incidence, incidence, 2 * incidence,
-                                         number[way[b]->material]};
+                                         (double)way[b]->turn_rad, number, surface};
+        const struct nm_reflection sp = {incidence, incidence, 2 * incidence, number, surface};
         steps[b] = (struct nm_step){.cell = cell_of(grid, way[b])};
         steps[b].row[NM_BK] = table_find(&tables[NM_BK], &bk, &from);
         steps[b].row[NM_SP] = b + 1 < count ? table_find(&tables[NM_SP], &sp, &from) : -1;
@@ -190,13 +222,13 @@ static int take_ray(const struct trace_grid *grid, const struct trace_record *co
 }
 
 static void take_rays(struct nm_paths *p, const struct trace_records *records,
-                      const uint8_t *number, struct table tables[NM_DIRECTIONS])
+                      const struct numbered *materials, struct table tables[NM_DIRECTIONS])
 {
     struct cursor cursor = {records, {0}};
     const struct trace_record *way[TRACE_BOUNCES_MAX];
     int32_t used = 0;
     for (int count; (count = next_ray(&cursor, way)) > 0;) {
-        count = take_ray(&records->grid, way, count, number, tables, p->steps + used);
+        count = take_ray(&records->grid, way, count, materials, tables, p->steps + used);
         if (count > 0) {
             p->first[p->ray_count++] = used;
             used += count;
@@ -208,11 +240,14 @@ static void take_rays(struct nm_paths *p, const struct trace_records *records,
 int nm_paths_build(struct nm_paths *p, const struct trace_records *records,
                    const struct nm_materials *known, enum nm_connection connection)
 {
-    uint8_t number[TRACE_MATERIALS_MAX];
+    struct numbered materials = {.surface = {{0, 0, 0, 0}}};
     uint32_t total = 0;
     *p = (struct nm_paths){0};
-    if (nm_materials_match(known, records, number) != 0) {
+    if (nm_materials_match(known, records, materials.number) != 0) {
         return -1;
+    }
+    for (uint32_t i = 0; known && i < records->material_count; i++) {
+        materials.surface[i] = known->surfaces[materials.number[i]];
     }
     for (uint32_t b = 0; b < records->bounce_count; b++) {
         total += records->bounces[b].count;
@@ -233,7 +268,7 @@ int nm_paths_build(struct nm_paths *p, const struct trace_records *records,
         result = table_open(&tables[d], total + 1, connection);
     }
     if (result == 0) {
-        take_rays(p, records, number, tables);
+        take_rays(p, records, &materials, tables);
     }
     for (int d = 0; d < NM_DIRECTIONS; d++) {
         p->table[d] = tables[d].rows;

@@ -90,6 +90,7 @@ int nm_report_losses(const char *path, const char *title, const struct nm_loss_c
 
 struct law_line {
     const struct nm_model *model;
+    const struct nm_materials *materials;
     const struct reflect_law *law;
     enum nm_direction direction;
     int material;
@@ -101,11 +102,12 @@ struct law_line {
 static struct nm_reflection reflection_at(const struct law_line *line, double degrees)
 {
     const double angle = degrees * pi / 180;
+    const struct nm_surface surface = line->materials->surfaces[line->material];
     if (line->direction == NM_SP) {
-        return (struct nm_reflection){angle, angle, 2 * angle, line->material};
+        return (struct nm_reflection){angle, angle, 2 * angle, line->material, surface};
     }
     return (struct nm_reflection){line->incidence_rad, fabs(angle),
-                                  fabs(line->incidence_rad - angle), line->material};
+                                  fabs(line->incidence_rad - angle), line->material, surface};
 }
 
 static double learned_at(void *ctx, double degrees)
@@ -138,7 +140,8 @@ static const char *material_name(const struct reflect_law *law, int material, ch
     return text;
 }
 
-int nm_report_specular(const char *path, const struct nm_model *model, int material_count,
+int nm_report_specular(const char *path, const struct nm_model *model,
+                       const struct nm_materials *materials, int material_count,
                        const struct reflect_law *law)
 {
     struct sheet s;
@@ -161,7 +164,7 @@ int nm_report_specular(const char *path, const struct nm_model *model, int mater
                             "angle of incidence, degrees"};
     chart_axes(&c);
     for (int m = 0; m < material_count; m++) {
-        struct law_line line = {model, law, NM_SP, m, 0};
+        struct law_line line = {model, materials, law, NM_SP, m, 0};
         draw_law(&c, &line, m);
         draw_key(&s, 60, 465 + 22 * m, material_name(law, m, text, sizeof text), m);
     }
@@ -169,11 +172,12 @@ int nm_report_specular(const char *path, const struct nm_model *model, int mater
 }
 
 /* The top of the scale: the largest learned value, rounded up to a tenth. */
-static double back_top(const struct nm_model *model, int material)
+static double back_top(const struct nm_model *model, const struct nm_materials *materials,
+                       int material)
 {
     double most = 0.1;
     for (int t = 0; t <= 75; t += 15) {
-        struct law_line line = {model, NULL, NM_BK, material, t * pi / 180};
+        struct law_line line = {model, materials, NULL, NM_BK, material, t * pi / 180};
         for (int x = -90; x <= 90; x += 5) {
             most = fmax(most, learned_at(&line, x));
         }
@@ -181,7 +185,8 @@ static double back_top(const struct nm_model *model, int material)
     return ceil(most * 10 - 1e-9) / 10;
 }
 
-int nm_report_back(const char *path, const struct nm_model *model, int material_count,
+int nm_report_back(const char *path, const struct nm_model *model,
+                   const struct nm_materials *materials, int material_count,
                    const struct reflect_law *law)
 {
     struct sheet s;
@@ -190,7 +195,7 @@ int nm_report_back(const char *path, const struct nm_model *model, int material_
         return -1;
     }
     for (int m = 0; m < material_count; m++) {
-        const double top = back_top(model, m);
+        const double top = back_top(model, materials, m);
         const struct chart c = {&s,
                                 60,
                                 40 + 380 * m,
@@ -206,7 +211,7 @@ int nm_report_back(const char *path, const struct nm_model *model, int material_
                                 "echo angle, deg; + where the ray came from"};
         chart_axes(&c);
         for (int t = 0; t <= 75; t += 15) {
-            struct law_line line = {model, law, NM_BK, m, t * pi / 180};
+            struct law_line line = {model, materials, law, NM_BK, m, t * pi / 180};
             draw_law(&c, &line, t / 15);
         }
     }

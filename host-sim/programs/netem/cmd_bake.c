@@ -3,6 +3,7 @@
 #include "hs/error.h"
 #include "netem/model_file.h"
 #include "netem/settings.h"
+#include "netem/surfaces.h"
 #include "tracer/bake_settings.h"
 
 #include <math.h>
@@ -20,6 +21,8 @@ enum { CELLS_MIN = 64, CELLS_MAX = 1024, MIDDLE = NM_LARGE / 2 };
 /* The networks, and the response under which their amplitudes mean something. */
 struct net_maker {
     struct nm_training *training; /* owned */
+    const struct setup *setup;
+    bool has_met; /* the model's materials */
     double kernel[NM_LARGE * NM_LARGE];
     double lobe; /* sum of its squares over the middle's: cells of full amplitude */
 };
@@ -42,6 +45,20 @@ static void take_lobe(struct net_maker *maker)
     }
 }
 
+/* Once: the records of all looks have the same materials. */
+static int meet(struct net_maker *maker, const struct trace_records *r)
+{
+    struct nm_materials model;
+    if (maker->has_met || maker->training->model.architecture->material != NM_AS_SURFACE) {
+        return 0;
+    }
+    maker->has_met = true;
+    return nm_surfaces_of(maker->setup, r->materials, r->material_count, &model) == 0
+               ? nm_surfaces_meet(&maker->training->materials, &model,
+                                  maker->setup->materials != NULL)
+               : -1;
+}
+
 /* A calibrated chip's amplitude is the root of a cross section at the peak of a response
  * (nm_kernel_gain); as power that is shared by the cells under the lobe. */
 static int draw_by_networks(void *ctx, const struct trace_records *r, float *power)
@@ -49,7 +66,8 @@ static int draw_by_networks(void *ctx, const struct trace_records *r, float *pow
     struct net_maker *maker = ctx;
     struct nm_simulator *s = &maker->training->simulator;
     struct nm_paths paths;
-    if (nm_paths_build(&paths, r, &maker->training->materials,
+    if (meet(maker, r) != 0 ||
+        nm_paths_build(&paths, r, &maker->training->materials,
                        maker->training->model.architecture->connection) != 0) {
         return -1;
     }
@@ -88,24 +106,29 @@ static int open_networks(struct net_maker *maker, const char *path, uint32_t cel
     }
     if (nm_model_read(maker->training, path, (int)cells) != 0) {
         free(maker->training);
+        maker->training = NULL;
         return -1;
     }
     take_lobe(maker);
-    return 0;
+    return nm_surfaces_allow(maker->setup, maker->training->model.architecture);
 }
 
 static int bake_mesh(const struct setup *setup, const struct bake_settings *settings,
                      const char *training, const struct mesh *m)
 {
     struct bake_order order;
-    struct net_maker maker = {0};
-    if (bake_plan(settings, setup, m, &order) != 0 || choose_cells(&order, setup->cell_m) != 0 ||
-        open_networks(&maker, training, order.grid.cells_across) != 0) {
+    struct net_maker maker = {.setup = setup};
+    if (bake_plan(settings, setup, m, &order) != 0 || choose_cells(&order, setup->cell_m) != 0) {
         return -1;
     }
-    order.maker = (struct bake_maker){&maker, draw_by_networks};
-    const int result = bake_run(settings, &order, m);
-    nm_training_close(maker.training);
+    int result = open_networks(&maker, training, order.grid.cells_across);
+    if (result == 0) {
+        order.maker = (struct bake_maker){&maker, draw_by_networks};
+        result = bake_run(settings, &order, m);
+    }
+    if (maker.training) {
+        nm_training_close(maker.training);
+    }
     free(maker.training);
     return result;
 }
@@ -115,11 +138,12 @@ int nm_cmd_bake(int argc, char **argv)
     struct setup setup = setup_default();
     struct bake_settings settings = bake_settings_default(0);
     const char *training = NULL;
-    enum { BAKE = 1 + SETUP_MODEL_OPTIONS, RAYS = BAKE + BAKE_OPTIONS };
+    enum { BAKE = 2 + SETUP_MODEL_OPTIONS, RAYS = BAKE + BAKE_OPTIONS };
     struct hs_option options[RAYS + SETUP_RAY_OPTIONS] = {
-        {"training", HS_INPUT, &training, 0, 0, "FILE", "that `train` left", true}};
+        {"training", HS_INPUT, &training, 0, 0, "FILE", "that `train` left", true},
+        nm_surfaces_option(&setup)};
     int exit_code;
-    setup_model_options(&setup, options + 1);
+    setup_model_options(&setup, options + 2);
     bake_options(&settings, options + BAKE);
     setup_ray_options(&setup, options + RAYS);
     if (hs_options_read(&usage, options, sizeof options / sizeof options[0], argc, argv,

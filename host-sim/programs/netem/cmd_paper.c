@@ -108,7 +108,7 @@ static int run_target(const struct nm_settings *settings, const struct folders *
     nm_chip_list_free(&list);
     for (int i = 0; i < NM_ARCHITECTURES && result == 0; i++) {
         const char *name = nm_architectures[NM_BY_COEFFICIENT][i].name;
-        if (f->is_all || strcmp(name, settings->architecture) == 0) {
+        if (f->is_all ? i < NM_PAPERS : strcmp(name, settings->architecture) == 0) {
             result = train_one(&e, f->out, target, name);
         }
     }

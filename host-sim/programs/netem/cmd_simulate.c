@@ -8,6 +8,7 @@
 #include "netem/experiment.h"
 #include "netem/report.h"
 #include "netem/speckle.h"
+#include "netem/surfaces.h"
 
 #include <math.h>
 #include <stdbool.h>
@@ -25,7 +26,7 @@ static const struct hs_usage usage = {
     "speckle: FOLDER/AZIMUTH-peak.png is white at the brightest cell, FOLDER/AZIMUTH-cut.png at\n"
     "--cut-db below it and above."};
 
-enum { OPTIONS = NM_VIEW_OPTIONS + 8 };
+enum { OPTIONS = NM_VIEW_OPTIONS + 9 };
 
 struct order {
     const char *training, *out;
@@ -141,6 +142,7 @@ static int run(const struct nm_settings *settings, const struct order *o)
         return -1;
     }
     int result = nm_experiment_take(&e, o->training);
+    result = result == 0 ? nm_surfaces_allow(&settings->setup, e.training->model.architecture) : -1;
     hs_rng_seed(&rng, (uint64_t)o->seed);
     hs_progress_begin(&progress, "chips", (uint64_t)o->views);
     for (long v = 0; v < o->views && result == 0; v++) {
@@ -170,7 +172,8 @@ int nm_cmd_simulate(int argc, char **argv)
         {"cut-db", HS_REAL, &o.cut_db, 0, 80, "DB", "below the brightest cell that are white",
          false},
     };
-    nm_view_options(&s, options + 8);
+    options[8] = nm_surfaces_option(&s.setup);
+    nm_view_options(&s, options + 9);
     if (!hs_options_read(&usage, options, OPTIONS, argc, argv, &exit_code)) {
         return exit_code;
     }

@@ -1,5 +1,5 @@
 /* Architectures of reflection networks: those that Niu compares, EP1 to EP5 of Table III and Fig.
- * 17, EP6 to EP8 of Table IV; and EP9 of ours, which is EP8 with other inputs. */
+ * 17, EP6 to EP8 of Table IV; and EP9 and EP10 of ours, which are EP8 with other inputs. */
 #ifndef NETEM_ARCHITECTURE_H
 #define NETEM_ARCHITECTURE_H
 
@@ -14,6 +14,13 @@ enum { NM_INPUTS = 4 };
  * where a mirror would send the ray to the radar, and how near it is to 0; and one input for each
  * material, of which one is not 0, so that materials have no order. */
 enum { NM_ANGLE_INPUTS = 5, NM_OWN_INPUTS = NM_ANGLE_INPUTS + TRACE_MATERIALS_MAX };
+
+/* EP10's: EP9's angles, and what the material is made of (struct nm_surface), so that one network
+ * knows all materials between those of its training. */
+enum { NM_SURFACE_INPUTS = 4 };
+
+/* What a network is told of the material. */
+enum nm_material_input { NM_AS_NUMBER, NM_AS_NAME, NM_AS_SURFACE };
 
 /* How one reflection's network is connected with the next one's. */
 enum nm_connection {
@@ -37,13 +44,14 @@ enum nm_wiring {
 };
 
 struct nm_architecture {
-    const char *name; /* "EP1" to "EP9" */
+    const char *name; /* "EP1" to "EP10" */
     enum nm_wiring wiring;
     enum nm_connection connection;
+    enum nm_material_input material;
     struct nm_network network; /* one of them, where there are two alike */
 };
 
-enum { NM_ARCHITECTURES = 9 };
+enum { NM_ARCHITECTURES = 10, NM_PAPERS = 8 }; /* the paper's come first */
 extern const struct nm_architecture nm_architectures[NM_CONNECTIONS][NM_ARCHITECTURES];
 
 /* NULL when there is no such name. */

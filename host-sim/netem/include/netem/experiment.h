@@ -9,7 +9,9 @@
 
 struct nm_experiment {
     struct nm_settings settings;
-    struct nm_target_view view;   /* owned */
+    struct nm_target_view view; /* owned */
+    struct nm_materials
+        materials;                /* of the model, with surfaces if the networks are told of them */
     struct nm_dataset dataset;    /* owned */
     struct nm_training *training; /* owned */
 };

@@ -23,12 +23,19 @@ enum nm_direction { NM_BK, NM_SP, NM_DIRECTIONS };
  * between two chips of a collection. */
 #define NM_ANGLE_STEP_RAD 1e-3
 
+/* What a material is made of, as tracer/reflect.h has it; all 0 where nobody asks. */
+struct nm_surface {
+    double permittivity, loss; /* relative: permittivity - i loss */
+    double rms_height_m, correlation_m;
+};
+
 /* The geometry of one reflection in one direction. */
 struct nm_reflection {
     double incidence_rad; /* 0..pi/2 */
     double leaving_rad;   /* way out to the normal: 0..pi/2 (BK: up to pi, if blocked) */
     double turn_rad;      /* between the ways in and out, 0..pi */
     int material;
+    struct nm_surface surface; /* of that material */
 };
 
 /* One reflection of one ray. */
@@ -59,6 +66,7 @@ struct nm_paths {
 struct nm_materials {
     uint32_t count;
     char names[TRACE_MATERIALS_MAX][TRACE_NAME_SIZE];
+    struct nm_surface surfaces[TRACE_MATERIALS_MAX]; /* all 0, unless networks are told of them */
 };
 
 /* The number in `known` of each material of the records, by name. Returns 0, or -1 with the error

@@ -17,9 +17,11 @@ int nm_report_losses(const char *path, const char *title, const struct nm_loss_c
 
 /* Figs. 20 and 21: the learned coefficients of `material_count` materials; beside them, where `law`
  * is not NULL, those of a law that is written down, as dots. */
-int nm_report_specular(const char *path, const struct nm_model *model, int material_count,
+int nm_report_specular(const char *path, const struct nm_model *model,
+                       const struct nm_materials *materials, int material_count,
                        const struct reflect_law *law);
-int nm_report_back(const char *path, const struct nm_model *model, int material_count,
+int nm_report_back(const char *path, const struct nm_model *model,
+                   const struct nm_materials *materials, int material_count,
                    const struct reflect_law *law);
 
 /* Fig. 22: the large kernel over 60 dB, and the small ones from the least to the largest value. */

@@ -28,6 +28,13 @@ static const struct nm_architecture *coefficient(const char *name)
     return nm_architecture_find(name, NM_BY_COEFFICIENT);
 }
 
+/* Those of facets_make. */
+static const struct nm_materials materials = {
+    3,
+    {"metal", "ground", "rubber"},
+    {{1, 1e7, 2e-4, 0.02}, {6, 1, 1.5e-3, 0.02}, {3, 0.1, 1e-3, 0.05}},
+};
+
 static void open_bench(struct bench *b, const struct nm_architecture *architecture)
 {
     struct hs_rng rng;
@@ -38,7 +45,8 @@ static void open_bench(struct bench *b, const struct nm_architecture *architectu
         kernel[i] = 0.3 * exp(-(x * x + 2 * y * y + x) / 6);
     }
     facets_make(&b->records, 5, SIDE, CELLS);
-    assert_int_equal(nm_paths_build(&b->paths, &b->records, NULL, architecture->connection), 0);
+    assert_int_equal(nm_paths_build(&b->paths, &b->records, &materials, architecture->connection),
+                     0);
     assert_int_equal(nm_model_open(&b->model, architecture, kernel, &rng), 0);
     assert_int_equal(nm_simulator_open(&b->simulator, architecture, CELLS), 0);
     assert_int_equal(nm_picture_open(&b->real, SIDE + 3, SIDE + 1), 0);
@@ -195,7 +203,7 @@ static void draw_ray_by_ray(struct bench *b, double *image)
 
 TEST(what_a_network_gives_is_what_the_next_one_gets)
 {
-    static const char *const names[] = {"EP2", "EP5", "EP8", "EP9"};
+    static const char *const names[] = {"EP2", "EP5", "EP8", "EP9", "EP10"};
     for (size_t n = 0; n < sizeof names / sizeof names[0]; n++) {
         struct bench b = {.kind = NM_MSE};
         double image[CELLS * CELLS] = {0}, most = 0;

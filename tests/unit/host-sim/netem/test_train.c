@@ -3,6 +3,7 @@
 #include "check.h"
 #include "facets.h"
 #include "netem/model_file.h"
+#include "netem/surfaces.h"
 #include "support.h"
 
 #include <math.h>
@@ -13,12 +14,17 @@
 
 enum { CELLS = 32, SIDE = 16, RAYS = 20, TRAINING = 12, CHIPS = 16 };
 
-/* Fresnel power at vertical polarisation, eq. (6) squared; the second material absorbs, the third
- * is metal. */
+/* Those of facets_make: the second absorbs, the third is metal. */
+static const struct nm_materials surfaces = {
+    3,
+    {"metal", "ground", "rubber"},
+    {{4, 0, 1e-3, 0.02}, {12, 0, 1e-3, 0.02}, {1e9, 0, 1e-3, 0.02}},
+};
+
+/* Fresnel power at vertical polarisation, eq. (6) squared. */
 static double hidden_law(const struct nm_reflection *r)
 {
-    static const double permittivity[3] = {4, 12, 1e9};
-    const double e = permittivity[r->material], c = cos(r->incidence_rad);
+    const double e = r->surface.permittivity, c = cos(r->incidence_rad);
     const double s = sin(r->incidence_rad), root = sqrt(e - s * s);
     const double amplitude = (e * c - root) / (e * c + root);
     return amplitude * amplitude;
@@ -71,7 +77,8 @@ static void make_chip(struct world *w, struct nm_sample *s, uint64_t aspect, int
     *s = (struct nm_sample){0};
     facets_make(&records, 100 + aspect, RAYS, CELLS);
     assert_int_equal(
-        nm_paths_build(&s->paths, &records, NULL, w->training->model.architecture->connection), 0);
+        nm_paths_build(&s->paths, &records, &surfaces, w->training->model.architecture->connection),
+        0);
     trace_records_free(&records);
     coefficients_of(&s->paths, plain_law, plain_law, values);
     s->own = malloc(sizeof far);
@@ -108,6 +115,7 @@ static void open_connected(struct world *w, const struct nm_plan *plan,
     w->training = malloc(sizeof *w->training);
     make_kernel(w->kernel);
     assert_int_equal(nm_training_open(w->training, plan, architecture, w->kernel, CELLS), 0);
+    w->training->materials = surfaces;
     for (int i = 0; i < CHIPS; i++) {
         make_chip(w, &w->samples[i], (uint64_t)i, plan->reach_px, looks);
     }
@@ -147,22 +155,36 @@ static const struct nm_plan short_plan = {
     .seed = 1,
 };
 
-/* The mean error of the law in one direction over angles and materials, met by
- * everything. */
-static double law_error(const struct nm_training *t, enum nm_direction direction)
+static double error_at(const struct nm_training *t, const struct nm_reflection *asked,
+                       const struct nm_reflection *true_one, enum nm_direction direction)
+{
+    const double truth = direction == NM_BK ? hidden_echo(true_one) : hidden_law(true_one);
+    return fabs(nm_netem_ask(t->model.architecture, t->model.values, asked, direction, 1) - truth);
+}
+
+/* The mean error of the law in one direction over angles, for one material taken for another. */
+static double error_as(const struct nm_training *t, enum nm_direction direction, int material,
+                       const struct nm_surface *asked, const struct nm_surface *true_one)
 {
     double sum = 0;
     int count = 0;
-    for (int material = 0; material < 3; material++) {
-        for (double angle = 0.1; angle < 1.4; angle += 0.1, count++) {
-            const double turn = direction == NM_BK ? 0 : 2 * angle;
-            const struct nm_reflection r = {angle, angle, turn, material};
-            const double truth = direction == NM_BK ? hidden_echo(&r) : hidden_law(&r);
-            sum += fabs(nm_netem_ask(t->model.architecture, t->model.values, &r, direction, 1) -
-                        truth);
-        }
+    for (double angle = 0.1; angle < 1.4; angle += 0.1, count++) {
+        const double turn = direction == NM_BK ? 0 : 2 * angle;
+        const struct nm_reflection r = {angle, angle, turn, material, *asked};
+        const struct nm_reflection truth = {angle, angle, turn, material, *true_one};
+        sum += error_at(t, &r, &truth, direction);
     }
     return sum / count;
+}
+
+/* The mean over the materials, met by everything. */
+static double law_error(const struct nm_training *t, enum nm_direction direction)
+{
+    double sum = 0;
+    for (int m = 0; m < 3; m++) {
+        sum += error_as(t, direction, m, &surfaces.surfaces[m], &surfaces.surfaces[m]);
+    }
+    return sum / 3;
 }
 
 /* 0.003253 is what the paper reaches on real chips of SLICY (Fig. 23). */
@@ -197,6 +219,26 @@ TEST(networks_that_hand_intensities_on_learn_the_picture)
                   last, bk, sp);
     assert_true(last < 0.003253 && last < 0.1 * first);
     assert_true(bk < 0.03);
+    close_world(&w);
+}
+
+/* No chip has a permittivity of 7: 4 and 12 are its neighbours. */
+TEST(a_material_between_two_is_known_better_than_as_either)
+{
+    static const struct nm_surface between = {7, 0, 1e-3, 0.02};
+    struct world w;
+    open_world(&w, &short_plan, "EP10", 0);
+    run(&w, w.training, 200);
+    for (int d = 0; d < NM_DIRECTIONS; d++) {
+        const enum nm_direction direction = (enum nm_direction)d;
+        const double own = error_as(w.training, direction, 0, &between, &between);
+        const double low = error_as(w.training, direction, 0, &surfaces.surfaces[0], &between);
+        const double high = error_as(w.training, direction, 1, &surfaces.surfaces[1], &between);
+        print_message(
+            "# %s: error of the law %.4f; taken for the lower %.4f, for the higher %.4f\n",
+            d == NM_BK ? "back" : "specular", own, low, high);
+        assert_true(own < 0.7 * fmin(low, high));
+    }
     close_world(&w);
 }
 
@@ -336,6 +378,73 @@ TEST(a_file_from_before_the_choice_multiplies_coefficients)
     close_world(&w);
     close(fd);
     unlink(path);
+}
+
+TEST(a_file_holds_what_its_materials_are_made_of)
+{
+    struct world w;
+    char path[] = "/tmp/landmass-netem-XXXXXX";
+    const int fd = mkstemp(path);
+    struct nm_training *again = malloc(sizeof *again);
+    open_world(&w, &short_plan, "EP10", 0);
+    assert_int_equal(nm_model_write(w.training, path), 0);
+    assert_int_equal(nm_model_read(again, path, CELLS), 0);
+    assert_memory_equal(&again->materials, &surfaces, sizeof surfaces);
+    nm_training_close(again);
+    static const char *const hostile[] = {"surface 0 0 0 0",   "surface 4 -1 0 0",
+                                          "surface 4 0 0",     "surface nan 0 0 0",
+                                          "surface 4 0 0 0 0", "surface 4 0 9 0"};
+    for (size_t i = 0; i < sizeof hostile / sizeof hostile[0]; i++) {
+        assert_int_equal(support_run("sed '5s/.*/%s/' %s > %s.bad", hostile[i], path, path), 0);
+        char bad[64];
+        snprintf(bad, sizeof bad, "%s.bad", path);
+        assert_int_equal(nm_model_read(again, bad, CELLS), -1);
+        unlink(bad);
+    }
+    assert_int_equal(support_run("sed -i '5s/.*/surface 4 0 0 0/' %s", path), 0);
+    assert_int_equal(nm_model_read(again, path, CELLS), 0);
+    nm_training_close(again);
+    assert_int_equal(support_run("sed -i 5d %s", path), 0);
+    assert_int_equal(nm_model_read(again, path, CELLS), -1);
+    free(again);
+    close_world(&w);
+    close(fd);
+    unlink(path);
+}
+
+static struct nm_materials one_material(const char *name, double permittivity)
+{
+    struct nm_materials m = {.count = 1};
+    strcpy(m.names[0], name);
+    m.surfaces[0] = (struct nm_surface){permittivity, 0, 1e-3, 0.02};
+    return m;
+}
+
+TEST(a_new_material_is_met_between_those_of_the_training_and_nowhere_else)
+{
+    struct nm_materials known = surfaces;
+    const struct nm_materials between = one_material("mud", 7), below = one_material("foam", 3.9);
+    const struct nm_materials above = one_material("mirror", 1.1e9);
+    const struct nm_materials same = one_material("ground", 5);
+    assert_int_equal(nm_surfaces_meet(&known, &below, false), -1);
+    assert_int_equal(nm_surfaces_meet(&known, &above, false), -1);
+    assert_memory_equal(&known, &surfaces, sizeof known);
+    assert_int_equal(nm_surfaces_meet(&known, &between, false), 0);
+    assert_int_equal(known.count, 4);
+    assert_string_equal(known.names[3], "mud");
+    assert_true(known.surfaces[3].permittivity == 7);
+    assert_int_equal(nm_surfaces_meet(&known, &same, false), 0);
+    assert_true(known.surfaces[1].permittivity == 12); /* as the training has it */
+    assert_int_equal(nm_surfaces_meet(&known, &same, true), 0);
+    assert_true(known.count == 4 && known.surfaces[1].permittivity == 5);
+    for (int i = 0; known.count < TRACE_MATERIALS_MAX; i++) {
+        char name[16];
+        snprintf(name, sizeof name, "mud.%d", i);
+        const struct nm_materials more = one_material(name, 8);
+        assert_int_equal(nm_surfaces_meet(&known, &more, false), 0);
+    }
+    const struct nm_materials last = one_material("slush", 8);
+    assert_int_equal(nm_surfaces_meet(&known, &last, false), -1);
 }
 
 TEST(descent_without_adam_learns_too_and_so_does_the_absolute_error)

@@ -44,7 +44,7 @@ TEST(a_command_line_that_makes_no_sense_is_told_so)
     assert_int_equal(
         support_run("%s/bin/landmass-netem recover --model slicy --out %s --rate x", b, folder), 2);
     assert_int_equal(support_run("%s/bin/landmass-netem recover --model slicy --out %s/none "
-                                 "--architecture EP10",
+                                 "--architecture EP11",
                                  b, folder),
                      2);
 }
@@ -296,6 +296,41 @@ TEST(networks_that_hand_intensities_on_go_all_the_way)
                                  "%s/handed/training.netem --out %s/handed-plot",
                                  b, folder, folder),
                      0);
+}
+
+/* Ground of a training is as the built-in table has it, permittivity 6. The file's lies between it
+ * and metal; a first line beyond both is refused, and so is any by a training of names. */
+TEST(a_material_between_those_learned_can_be_simulated)
+{
+    static const char simulate[] =
+        "%s/bin/landmass-netem simulate --model slicy --cells 64 --rays 1 --azimuth 30 --training "
+        "%s/%s/training.netem --out %s/%s";
+    const char *b = support_build_dir();
+    char line[512];
+    assert_int_equal(support_run(RECOVER " --architecture EP10", b, folder, "surfaces"), 0);
+    assert_int_equal(support_run(RECOVER " --architecture EP10 --resume", b, folder, "surfaces"),
+                     0);
+    assert_int_equal(support_run("cd %s && echo 'ground 4 10 0.001 0.02 0.3 0.02 0.03 1' > mid && "
+                                 "echo 'ground 7 10 0.001 0.02 0.3 0.02 0.03 1' > beyond",
+                                 folder),
+                     0);
+    snprintf(line, sizeof line, simulate, b, folder, "surfaces", folder, "as-learned");
+    assert_int_equal(support_run("%s", line), 0);
+    snprintf(line, sizeof line, simulate, b, folder, "surfaces", folder, "as-given");
+    assert_int_equal(support_run("%s --materials %s/mid", line, folder), 0);
+    assert_int_equal(
+        support_run("cmp -s %s/as-learned/030.00.csv %s/as-given/030.00.csv", folder, folder), 1);
+    assert_int_equal(support_run("%s --materials %s/beyond 2> %s/refused", line, folder, folder),
+                     1);
+    assert_int_equal(support_run("grep 'ground: has a permittivity of 7' %s/refused", folder), 0);
+    snprintf(line, sizeof line, simulate, b, folder, "whole", folder, "as-given");
+    assert_int_equal(support_run("%s --materials %s/mid", line, folder), 1);
+    snprintf(line, sizeof line,
+             "%s/bin/landmass-netem bake --model slicy --rays 1 --aspects 3 --depressions 30 "
+             "--training %s/surfaces/training.netem --out %s/surfaces.sig",
+             b, folder, folder);
+    assert_int_equal(support_run("%s", line), 0);
+    assert_int_equal(support_run("%s --materials %s/beyond", line, folder), 1);
 }
 
 /* The chips of the real T-72: found, learned for a moment, and scored. */
