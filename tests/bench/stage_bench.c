@@ -117,7 +117,8 @@ static struct lm_target_set parked(struct world *w)
     }
     w->chip_source = (struct lm_chip_source){w->db.chips_offset, 0};
     lm_chips_init(&w->chips, &w->chip_source, &w->signature);
-    return (struct lm_target_set){w->targets, TARGETS, &w->signature, 1, NULL};
+    return (struct lm_target_set){
+        .items = w->targets, .count = TARGETS, .signatures = &w->signature, .signature_count = 1};
 }
 
 /* `targets` may be NULL. */
