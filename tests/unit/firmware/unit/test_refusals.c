@@ -125,9 +125,27 @@ TEST(a_track_is_refused_for_what_it_lacks)
     press(r, 4);
     press(r, 12);
     expect_of_tracks(r, LM_REFUSED_PAGE, false);
+    press(r, 14);
+    expect_of_tracks(r, LM_REFUSED_PAGE, false);
     press(r, 13);
     r->unit.map.is_usable = false;
     expect_of_tracks(r, LM_REFUSED_MAP, true);
+    free_rig(r);
+}
+
+/* Sent home, it has no place before the next step. Ranging looks ahead, and needs none. */
+TEST(a_cursor_that_was_just_sent_home_is_not_tracked)
+{
+    struct rig *r = listened_rig();
+    run(r, 2);
+    command(r, lm_control_button(true, 9));
+    command(r, lm_control_button(false, 9));
+    expect(r, (struct lm_control){.kind = LM_CONTROL_TRACK}, LM_REFUSED_CURSOR, true);
+    assert_int_equal(r->unit.track.state, LM_TRACK_OFF);
+    command(r, lm_control_button(true, 9));
+    command(r, lm_control_button(false, 9));
+    expect(r, (struct lm_control){.kind = LM_CONTROL_RANGING}, LM_REFUSED_NOT, true);
+    assert_int_not_equal(r->unit.track.state, LM_TRACK_OFF);
     free_rig(r);
 }
 

@@ -586,6 +586,51 @@ TEST(a_take_counts_once_and_for_its_own_exchange)
     close_wire(w);
 }
 
+/* Codes are of eight bits: the 256th exchange has 0. An offer of 255 came before it, but for one
+ * part; nothing of it stands in for what the answer leaves out. */
+TEST(an_offer_and_an_answer_are_never_put_together_to_one_page)
+{
+    struct rig *left;
+    struct wire *w = begin_alone(&left);
+    struct seat *s = &w->seat[0];
+    const struct lm_settings sea_page = {.page = {0, LM_PICTURE_SECTOR, LM_SECTOR_SEA}};
+    const uint8_t *bytes = (const uint8_t *)&sea_page;
+    const uint32_t last = LM_SWAP_PARTS - 1;
+    const struct lm_can_frame rest =
+        frame_of((uint8_t)(LM_SWAP_OF_ANSWER + last), 0, bytes + 4 * last);
+    const struct lm_can_frame answer = frame_of(LM_SWAP_ANSWER, 0, (const uint8_t[4]){LEFT});
+    left->unit.swap.begun = 255;
+    offer(s, &sea_page, 255);
+    s->head -= 2; /* neither the last part nor ASK */
+    fly(w, 0.05);
+    press_osb(left, 15);
+    fly(w, 0.05);
+    assert_int_equal(w->sent, LM_SWAP_PARTS + 1);
+    put_to(s, &rest);
+    put_to(s, &answer);
+    fly(w, 0.3);
+    assert_int_equal(w->sent, LM_SWAP_PARTS + 1); /* no TAKE */
+    assert_int_equal(left->unit.swap.refused, 1);
+    fly(w, 0.3);
+    assert_true(says_no_swap(left));
+    close_wire(w);
+}
+
+TEST(exchanges_go_on_when_their_codes_begin_anew)
+{
+    struct rig *left, *right;
+    struct wire *w = begin_pair(&left, &right);
+    left->unit.swap.begun = 253;
+    for (int i = 1; i <= 4; i++) { /* 254, 255, 0, 1 */
+        press_osb(left, 15);
+        fly(w, 0.1);
+        assert_int_equal(outcome(left, right), i % 2);
+        assert_int_equal(left->unit.count.swaps, i);
+    }
+    assert_int_equal(left->unit.count.commands_refused, 0);
+    close_wire(w);
+}
+
 /* The rest of the settings may hold anything: it is brought into range. */
 TEST(numbers_beyond_their_range_do_no_harm)
 {

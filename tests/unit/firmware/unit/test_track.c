@@ -3,6 +3,7 @@
 #include "hs/angle.h"
 #include "lm/receiver.h"
 #include "target_support.h"
+#include "tracking.h"
 #include "unit_rig.h"
 #include "wgs84.h"
 
@@ -41,7 +42,15 @@ static const struct lm_track *track_of(const struct rig *r)
     return &r->unit.track;
 }
 
-static struct rig *gmt_rig(double heading_deg, double speed_m_s, double rcs_db)
+static void put_target(struct rig *r)
+{
+    seal_target(&moving);
+    r->unit.map.target_set.items = &moving;
+    r->unit.map.target_set.count = 1;
+}
+
+static struct rig *mover_rig(enum lm_sector_mode mode, double heading_deg, double speed_m_s,
+                             double rcs_db)
 {
     struct rig *r = rig_at(46, 11);
     moving = point_at(46, 11, 3, rcs_db);
@@ -50,15 +59,18 @@ static struct rig *gmt_rig(double heading_deg, double speed_m_s, double rcs_db)
     moving.heading = hs_bam(heading_deg);
     moving.speed_mm_s = (uint32_t)lround(speed_m_s * 1000);
     moving.leg_m = 50000;
-    seal_target(&moving);
-    r->unit.map.target_set.items = &moving;
-    r->unit.map.target_set.count = 1;
+    put_target(r);
     const struct lm_mover_state at = lm_mover_state_at(&moving, r->unit.exercise.time_us);
-    command(r, (struct lm_control){.kind = LM_CONTROL_SECTOR, .sector = {LM_SECTOR_GMT, 0}});
+    command(r, (struct lm_control){.kind = LM_CONTROL_SECTOR, .sector = {(int32_t)mode, 0}});
     command(r, (struct lm_control){.kind = LM_CONTROL_CURSOR, .cursor = at.position});
     command(r, track_it);
     run(r, 0.3);
     return r;
+}
+
+static struct rig *gmt_rig(double heading_deg, double speed_m_s, double rcs_db)
+{
+    return mover_rig(LM_SECTOR_GMT, heading_deg, speed_m_s, rcs_db);
 }
 
 /* Straight range between two points by their Cartesian coordinates. */
@@ -313,4 +325,171 @@ TEST(the_ground_ahead_is_ranged_where_the_nose_points_at_it)
     run(r, 0.2);
     assert_int_equal(track_of(r)->state, LM_TRACK_OFF);
     free_rig(r);
+}
+
+/* ---- what the picture makes of it ---- */
+
+TEST(a_ship_is_tracked_as_a_mover_where_the_mode_shows_ships)
+{
+    struct rig *r = mover_rig(LM_SECTOR_SEA, 180, 12, 40);
+    assert_int_equal(track_of(r)->kind, LM_TRACK_MOVER);
+    assert_int_equal(track_of(r)->state, LM_TRACK_HELD);
+    assert_true(says(r, "GMTT"));
+    free_rig(r);
+}
+
+/* Over a patch nothing that moves is tracked, whatever the sector's mode is. */
+TEST(over_a_patch_a_place_is_tracked_marked_and_the_picture_stays)
+{
+    struct rig *r = fly_rig();
+    command(r, (struct lm_control){.kind = LM_CONTROL_SECTOR, .sector = {LM_SECTOR_GMT, 0}});
+    struct lm_control patch = patch_here;
+    patch.sar.centre = (struct lm_position){hs_bam(46.01), hs_bam(11.03)};
+    command(r, patch);
+    run(r, 4);
+    cursor_to(r, 46.01, 11.03);
+    command(r, track_it);
+    run(r, 0.5);
+    assert_int_equal(track_of(r)->kind, LM_TRACK_FIXED);
+    assert_int_equal(track_of(r)->state, LM_TRACK_HELD);
+    assert_true(says(r, "FTT"));
+    assert_true(lit_pixels(r) > 1000);
+    struct lm_symbols s = {.view = r->unit.picture.view, .antenna_azimuth = 77};
+    lm_tracking_describe(&r->unit, &s);
+    const struct lm_view *v = &s.view;
+    assert_int_equal(s.track_shape, LM_SHAPE_FILLED);
+    assert_in_range(s.track.x - v->middle.x + 2, 0, 4);
+    assert_in_range(s.track.y - v->middle.y + 2, 0, 4);
+    assert_int_equal(s.antenna_azimuth, 77); /* it makes no sweep that a track could stop */
+    free_rig(r);
+}
+
+TEST(what_is_tracked_far_from_a_patch_is_told_and_not_marked)
+{
+    struct rig *r = fly_rig();
+    command(r, (struct lm_control){.kind = LM_CONTROL_SAR,
+                                   .sar = {.centre = patch_here.sar.centre,
+                                           .cell_mm = 500,
+                                           .range_m = 9000,
+                                           .height_m_q6 = 2000 * 64}});
+    run(r, 1);
+    assert_int_equal(r->unit.page.picture, LM_PICTURE_PATCH);
+    cursor_to(r, 45.98, 10.96); /* some 7 km, on a glass on which 6 km are 8,000 pixels */
+    command(r, track_it);
+    run(r, 0.5);
+    assert_int_equal(track_of(r)->state, LM_TRACK_HELD);
+    assert_true(says(r, "FTT"));
+    struct lm_symbols s = {.view = r->unit.picture.view};
+    lm_tracking_describe(&r->unit, &s);
+    assert_int_equal(s.track_shape, LM_SHAPE_NONE);
+    free_rig(r);
+}
+
+/* A still target 30 dBsm strong, so far north of the cursor. */
+static bool is_taken_at(const struct lm_control *picture, double away_m)
+{
+    struct rig *r = fly_rig();
+    command(r, *picture);
+    cursor_to(r, 46.01, 11.03);
+    run(r, 2.5);
+    moving = point_at(46.01 + away_m / 111150, 11.03, 120, 30);
+    put_target(r);
+    command(r, track_it);
+    run(r, 0.5);
+    assert_int_equal(track_of(r)->state, LM_TRACK_HELD);
+    const bool is_taken = track_of(r)->has_target;
+    is_near(hs_degrees(track_of(r)->seen.position.latitude),
+            46.01 + (is_taken ? away_m / 111150 : 0), 1e-6);
+    free_rig(r);
+    return is_taken;
+}
+
+/* A fortieth of the range, or of the side of a window or patch, four times less for what stands. */
+TEST(what_stands_is_taken_within_a_share_of_what_the_glass_shows)
+{
+    const struct lm_radar *radar = &lm_radar_default;
+    const struct lm_control whole = {.kind = LM_CONTROL_SECTOR,
+                                     .sector = {LM_SECTOR_GM, LM_FOV_NORM}},
+                            window = {.kind = LM_CONTROL_SECTOR,
+                                      .sector = {LM_SECTOR_GM, LM_FOV_DBS1}};
+    struct lm_control patch = patch_here;
+    patch.sar.centre = (struct lm_position){hs_bam(46.01), hs_bam(11.03)};
+    const struct {
+        const struct lm_control *picture;
+        double side_m;
+    } views[] = {{&whole, 18520},
+                 {&window, 2 * 18520 * radar->fov[LM_FOV_DBS1].window_permille / 1000.0},
+                 {&patch, patch.sar.cell_mm * radar->sar.cells / 1000.0}};
+    for (size_t i = 0; i < sizeof views / sizeof *views; i++) {
+        const double gate_m = views[i].side_m / 40 / 4;
+        assert_true(is_taken_at(views[i].picture, gate_m * 0.85));
+        assert_false(is_taken_at(views[i].picture, gate_m * 1.25));
+    }
+}
+
+static uint32_t scale_nm(const struct rig *r)
+{
+    return r->unit.page.radar->range[r->unit.page.range_index].range_nm;
+}
+
+TEST(an_automatic_scale_follows_what_is_tracked)
+{
+    struct rig *r = fly_rig();
+    command(r, (struct lm_control){.kind = LM_CONTROL_RANGE, .range_nm = 40});
+    run(r, 0.5);
+    press(r, 2); /* AUTO */
+    r->bus.pitch_deg = -20;
+    run(r, 1);
+    assert_int_equal(scale_nm(r), 40);
+    const struct lm_position cursor = r->unit.cursor.position;
+    command(r, range_it); /* some 5.5 km: less than 0.4 of 20 miles */
+    run(r, 1);
+    assert_int_equal(track_of(r)->state, LM_TRACK_HELD);
+    assert_int_equal(scale_nm(r), 10);
+    assert_true(r->unit.cursor.is_home);
+    assert_memory_equal(&r->unit.cursor.position, &cursor, sizeof cursor); /* and it stays */
+    free_rig(r);
+    r = make_rig_at(45.9, 11); /* 17.6 km away: more than 0.9 of 10 miles, less of 20 */
+    assert_int_equal(lm_unit_init(&r->unit, &r->board.lent), LM_OK);
+    command(r, range_10);
+    run(r, 1.5);
+    cursor_to(r, 45.945, 11);
+    r->bus.jump_degrees = -0.065;
+    run(r, 1);
+    command(r, track_it);
+    run(r, 0.5);
+    assert_int_equal(track_of(r)->state, LM_TRACK_HELD);
+    assert_int_equal(scale_nm(r), 10);
+    press(r, 2);
+    run(r, 0.5);
+    assert_int_equal(scale_nm(r), 20);
+    free_rig(r);
+}
+
+/* A snowplow cursor is held where it is by the first press; the second one acts. */
+TEST(a_cursor_ahead_of_the_aircraft_is_held_before_it_is_used)
+{
+    for (int is_track = 0; is_track < 2; is_track++) {
+        struct rig *r = fly_rig();
+        const struct lm_control act = is_track ? track_it : lm_control_designate();
+        press(r, 8);
+        const struct lm_position before = r->unit.cursor.position;
+        run(r, 0.5);
+        assert_int_not_equal(r->unit.cursor.position.latitude,
+                             before.latitude); /* it moves along */
+        command(r, act);
+        run(r, 0.1);
+        const struct lm_position held = r->unit.cursor.position;
+        run(r, 0.5);
+        assert_memory_equal(&r->unit.cursor.position, &held, sizeof held);
+        assert_int_equal(r->unit.page.picture, LM_PICTURE_SECTOR);
+        assert_int_equal(track_of(r)->state, LM_TRACK_OFF);
+        cursor_to(r, 46.01, 11.03);
+        command(r, act);
+        run(r, 0.5);
+        assert_int_equal(r->unit.page.picture, is_track ? LM_PICTURE_SECTOR : LM_PICTURE_PATCH);
+        assert_int_equal(track_of(r)->state, is_track ? LM_TRACK_HELD : LM_TRACK_OFF);
+        assert_int_equal(r->unit.count.commands_refused, 0);
+        free_rig(r);
+    }
 }
