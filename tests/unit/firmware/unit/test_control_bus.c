@@ -139,3 +139,32 @@ TEST(the_step_that_is_told_is_the_one_that_acted)
                      at_us);
     free_rig(r);
 }
+
+/* Eight a step from each source; what is more waits for the next step, and nothing is lost. */
+TEST(a_burst_of_controls_is_taken_eight_a_step)
+{
+    static struct wire from, to;
+    struct rig *first = make(&from, NODE, false), *second = make(&to, NODE + 1, true);
+    run(first, 1);
+    run(second, 1);
+    from.sent_count = 0;
+    for (int32_t db = 1; db <= 10; db++) {
+        command(first, (struct lm_control){.kind = LM_CONTROL_GAIN, .gain_db = db});
+    }
+    run(first, STEP_US * 1e-6);
+    assert_int_equal(first->unit.page.gain_db, 8);
+    run(first, STEP_US * 1e-6);
+    assert_int_equal(first->unit.page.gain_db, 10);
+    run(first, 0.1);
+    for (uint32_t i = 0; i < from.sent_count; i++) {
+        to.waiting[to.waiting_count] = from.sent[i];
+        to.waiting[to.waiting_count++].time_us = second->now_us;
+    }
+    run(second, STEP_US * 1e-6);
+    assert_int_equal(second->unit.page.gain_db, 8);
+    run(second, STEP_US * 1e-6);
+    assert_int_equal(second->unit.page.gain_db, 10);
+    assert_int_equal(second->unit.control_bus.count.heard, 10);
+    free_rig(first);
+    free_rig(second);
+}

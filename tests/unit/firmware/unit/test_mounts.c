@@ -383,6 +383,121 @@ TEST(a_flash_that_hangs_while_an_image_comes_is_outlived)
     end(w);
 }
 
+/* A read that never ends: what it may still write to is given to nobody, and no image comes. */
+TEST(an_image_does_not_come_while_a_read_of_before_has_not_ended)
+{
+    struct world *w = start(1);
+    const uint32_t one = patch_of(w);
+    struct lm_unit *u = &w->rig->unit;
+    w->rig->board.lent.flash_poll_limit = 1000;
+    command(w->rig, (struct lm_control){.kind = LM_CONTROL_DROP});
+    run(w->rig, 0.2);
+    comes(w, 2);
+    run(w->rig, 0.002);
+    goes(w, 2); /* the cache is empty */
+    w->rig->board.flash.busy_polls = UINT32_MAX;
+    for (int i = 0; i < 200 && w->rig->board.flash.now.polls_left == 0; i++) {
+        run(w->rig, 0.01);
+    }
+    assert_int_not_equal(w->rig->board.flash.now.polls_left, 0);
+    const uint32_t reads = w->rig->board.flash.reads;
+    comes(w, 1);
+    run(w->rig, 0.1);
+    assert_int_equal(u->map.part_status[1], LM_ERR_IO);
+    assert_int_equal(u->map.image_count, 1);
+    assert_int_equal(w->rig->board.flash.reads, reads); /* not even its header was asked for */
+    assert_true((u->flags & LM_FLAG_TILE) != 0);
+    w->rig->board.flash.busy_polls = w->rig->board.flash.now.polls_left = 0;
+    run(w->rig, 0.1);
+    goes(w, 1);
+    run(w->rig, 0.1);
+    assert_int_equal(patch_of(w), one);
+    end(w);
+}
+
+/* The first image is damaged, so the second brought tables and targets: it stays. */
+TEST(the_image_that_brought_the_tables_neither_comes_anew_nor_goes)
+{
+    struct world *w = make_world();
+    struct lm_unit *u = &w->rig->unit;
+    for (uint32_t i = 0; i < 2; i++) {
+        w->rig->board.lent.images[i] = w->parts[i];
+    }
+    w->bytes[100] ^= 1;
+    assert_int_equal(lm_unit_init(u, &w->rig->board.lent), LM_OK);
+    run(w->rig, 0.5);
+    assert_int_equal(u->map.image_count, 1);
+    assert_int_equal(u->map.db.base, w->parts[1].offset);
+    for (int i = 0; i < 2; i++) {
+        tell(w, 2, i * w->parts[1].bytes);
+        run(w->rig, 0.1);
+        assert_int_equal(u->refusal, LM_REFUSED_MAP);
+        assert_int_equal(u->count.commands_refused, i + 1);
+        assert_int_equal(u->map.image_count, 1);
+    }
+    const struct lm_flash_part *other = &w->parts[2];
+    assert_int_equal(lm_unit_map_mount(&u->map, 0, other, 1000), LM_ERR_RANGE);
+    assert_int_equal(lm_unit_map_mount(&u->map, LM_IMAGES_MAX, other, 1000), LM_ERR_RANGE);
+    assert_int_equal(u->map.image_count, 1);
+    end(w);
+}
+
+TEST(no_image_comes_to_a_display_without_a_map)
+{
+    struct world *w = make_world();
+    w->rig->board.lent.images[0] = w->parts[0];
+    w->bytes[100] ^= 1;
+    assert_int_equal(lm_unit_init(&w->rig->unit, &w->rig->board.lent), LM_OK);
+    run(w->rig, 0.1);
+    comes(w, 1);
+    run(w->rig, 0.1);
+    assert_int_equal(w->rig->unit.refusal, LM_REFUSED_MAP);
+    assert_int_equal(w->rig->unit.map.image_count, 0);
+    assert_int_equal(w->rig->unit.flags & LM_FLAG_DB, LM_FLAG_DB);
+    end(w);
+}
+
+TEST(nobody_signed_one_of_the_images_as_long_as_that_is_there)
+{
+    struct world *w = start(1);
+    const struct lm_unit *u = &w->rig->unit;
+    assert_int_equal(u->flags & LM_FLAG_UNSIGNED, 0);
+    command(w->rig, (struct lm_control){
+                        .kind = LM_CONTROL_IMAGE,
+                        .image = {.place = 2, .bytes = w->parts[1].bytes, .is_unsigned = true}});
+    comes(w, 2);
+    run(w->rig, 0.1);
+    assert_int_equal(u->flags & LM_FLAG_UNSIGNED, LM_FLAG_UNSIGNED);
+    goes(w, 2);
+    run(w->rig, 0.1);
+    assert_int_equal(u->flags & LM_FLAG_UNSIGNED, LM_FLAG_UNSIGNED);
+    goes(w, 1);
+    run(w->rig, 0.1);
+    assert_int_equal(u->flags & LM_FLAG_UNSIGNED, 0);
+    end(w);
+}
+
+/* It would begin anew over the new map, but the aircraft does not know where it is. */
+TEST(a_patch_that_cannot_begin_again_gives_way_to_the_sector)
+{
+    struct world *w = start(1);
+    const struct lm_unit *u = &w->rig->unit;
+    run(w->rig, 1);
+    struct lm_control c = patch_here;
+    c.sar.cell_mm = 1000; /* drawn in more than a second */
+    command(w->rig, c);
+    w->rig->bus.stop_us = w->rig->now_us;
+    run(w->rig, 0.6);
+    assert_in_range(u->picture.sar.line, 0, u->picture.sar.lines - 1);
+    assert_int_equal(u->flags & LM_FLAG_NAV_STALE, LM_FLAG_NAV_STALE);
+    assert_int_equal(u->page.picture, LM_PICTURE_PATCH);
+    comes(w, 1);
+    run(w->rig, 0.1);
+    assert_int_equal(u->page.picture, LM_PICTURE_SECTOR);
+    assert_int_equal(u->count.commands_refused, 0); /* the image itself was welcome */
+    end(w);
+}
+
 TEST(after_a_storm_of_changes_the_picture_is_that_of_a_quiet_start)
 {
     struct world *w = start(1);

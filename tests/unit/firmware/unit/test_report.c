@@ -1,7 +1,9 @@
 /* What the unit tells the other avionics, held against PROJ's geodesics, the hills of the tiny
  * country, and the glass. */
 #include "check.h"
+#include "hs/angle.h"
 #include "lm/canas_report.h"
+#include "target_support.h"
 #include "unit_rig.h"
 #include "wgs84.h"
 
@@ -15,12 +17,17 @@ struct listener {
     uint32_t frames, states;
     int (*receive)(void *ctx, struct lm_can_frame *frame);
     void *ctx;
+    uint32_t kept[2]; /* identifiers that do not come any more */
 };
 
 static int hear(void *ctx, struct lm_can_frame *frame)
 {
     struct listener *l = ctx;
-    return l->receive(l->ctx, frame);
+    int status;
+    do {
+        status = l->receive(l->ctx, frame);
+    } while (status == 1 && (frame->id == l->kept[0] || frame->id == l->kept[1]));
+    return status;
 }
 
 static int listen(void *ctx, const struct lm_can_frame *frame)
@@ -277,5 +284,173 @@ TEST(the_state_word_comes_twice_a_second_and_a_unit_without_a_number_is_silent)
     r = rig_that_tells(&l, 0);
     run(r, 2);
     assert_int_equal(l.frames + l.states, 0);
+    free_rig(r);
+}
+
+static const struct lm_control cursor_on_map = {.kind = LM_CONTROL_CURSOR,
+                                                .cursor = {FX_BAM_DEG(46), FX_BAM_DEG(221) / 20}};
+
+TEST(a_slant_range_needs_a_height_and_an_elevation_a_map)
+{
+    static struct listener l;
+    struct rig *r = rig_that_tells(&l, NODE);
+    command(r, cursor_on_map);
+    run(r, 1.5);
+    assert_true(is_told(&l, LM_REPORT_CURSOR_SLANT));
+    l.kept[0] = 1038, l.kept[1] = 320;
+    run(r, 12);
+    assert_true(r->unit.ownship.height_quality == LM_NAV_DEAD);
+    assert_true(is_told(&l, LM_REPORT_CURSOR_RANGE) && is_told(&l, LM_REPORT_CURSOR_ELEVATION));
+    assert_false(is_told(&l, LM_REPORT_CURSOR_SLANT));
+    free_rig(r);
+    r = rig_that_tells(&l, NODE);
+    r->image.bytes[100] ^= 1;
+    assert_int_equal(lm_unit_init(&r->unit, &r->board.lent), LM_OK);
+    command(r, cursor_on_map);
+    run(r, 1.5);
+    assert_true(is_told(&l, LM_REPORT_CURSOR_RANGE));
+    assert_false(is_told(&l, LM_REPORT_CURSOR_SLANT) || is_told(&l, LM_REPORT_CURSOR_ELEVATION));
+    free_rig(r);
+}
+
+/* 555 km north: the map is known as before, the range is none that a radar has. */
+TEST(a_place_of_the_map_beyond_400_km_is_told_without_ranges)
+{
+    static struct listener l;
+    struct rig *r = rig_that_tells(&l, NODE);
+    run(r, 1.5);
+    r->bus.jump_degrees = 5;
+    run(r, 1);
+    command(r, cursor_on_map);
+    run(r, 1);
+    assert_float_equal(told(&l, LM_REPORT_CURSOR_ELEVATION), hill_m(46, 11.05), 4);
+    assert_false(is_told(&l, LM_REPORT_CURSOR_RANGE) || is_told(&l, LM_REPORT_CURSOR_SLANT));
+    free_rig(r);
+}
+
+TEST(a_patch_beside_the_map_is_told_without_an_elevation)
+{
+    static struct listener l;
+    struct rig *r = rig_that_tells(&l, NODE);
+    run(r, 1.5);
+    struct lm_control beside = patch_here;
+    beside.sar.centre.longitude = hs_bam(11.1);
+    command(r, beside);
+    run(r, 1);
+    assert_float_equal(told(&l, LM_REPORT_PLACE_LONGITUDE), 11.1, 2e-7);
+    assert_false(is_told(&l, LM_REPORT_PLACE_ELEVATION));
+    free_rig(r);
+}
+
+TEST(a_patch_whose_tiles_are_not_there_yet_is_told_as_being_read)
+{
+    static struct listener l;
+    struct rig *r = rig_that_tells(&l, NODE);
+    run(r, 1.4);
+    r->board.flash.busy_polls = 1000;
+    command(r, patch_here);
+    run(r, 0.3);
+    assert_int_equal(l.last[LM_REPORT_PATCH].data[4], LM_REPORT_READING);
+    assert_int_equal(l.last[LM_REPORT_PATCH].data[5], 0);
+    run(r, 0.5); /* by then the patch begins with whatever there is */
+    assert_int_equal(l.last[LM_REPORT_PATCH].data[4], LM_REPORT_DRAWING);
+    free_rig(r);
+}
+
+/* South-east at 20 m/s, two kilometres ahead. A target is no place. */
+TEST(a_mover_is_told_with_its_speed_and_course_and_as_no_place)
+{
+    static struct listener l;
+    static struct lm_target mover;
+    struct rig *r = rig_that_tells(&l, NODE);
+    run(r, 1.5);
+    mover = point_at(46, 11.01, 3, 20);
+    mover.flags = LM_TARGET_ABOVE_GROUND;
+    mover.heading = hs_bam(160);
+    mover.speed_mm_s = 20000;
+    mover.leg_m = 50000;
+    seal_target(&mover);
+    r->unit.map.target_set.items = &mover;
+    r->unit.map.target_set.count = 1;
+    const struct lm_mover_state at = lm_mover_state_at(&mover, r->unit.exercise.time_us);
+    command(r, (struct lm_control){.kind = LM_CONTROL_SECTOR, .sector = {LM_SECTOR_GMT, 0}});
+    command(r, (struct lm_control){.kind = LM_CONTROL_CURSOR, .cursor = at.position});
+    command(r, (struct lm_control){.kind = LM_CONTROL_TRACK});
+    run(r, 1);
+    assert_int_equal(l.last[LM_REPORT_TRACK].data[4], LM_TRACK_MOVER);
+    assert_int_equal(l.last[LM_REPORT_TRACK].data[5], LM_TRACK_HELD);
+    assert_float_equal(told(&l, LM_REPORT_TRACK_SPEED), 20, 0.01);
+    assert_float_equal(remainder(told(&l, LM_REPORT_TRACK_COURSE) - 160, 180), 0, 0.1);
+    assert_false(is_told(&l, LM_REPORT_PLACE_LATITUDE) || is_told(&l, LM_REPORT_PLACE_ELEVATION));
+    free_rig(r);
+}
+
+/* Between two measurements a track coasts by what was known last; the own speed is not. */
+TEST(without_a_velocity_a_track_closes_at_no_rate_and_ends)
+{
+    static struct listener l;
+    struct rig *r = rig_that_tells(&l, NODE);
+    run(r, 1.5);
+    command(r, cursor_on_map);
+    run(r, 0.3);
+    command(r, (struct lm_control){.kind = LM_CONTROL_TRACK});
+    run(r, 1);
+    assert_true(told(&l, LM_REPORT_TRACK_RATE) < -50);
+    l.kept[0] = 1039, l.kept[1] = 1040;
+    for (int i = 0; i < 150 && r->unit.track.state == LM_TRACK_HELD; i++) {
+        run(r, 0.1);
+    }
+    run(r, 0.3);
+    assert_int_equal(l.last[LM_REPORT_TRACK].data[5], LM_TRACK_COASTING);
+    assert_int_equal(l.last[LM_REPORT_TRACK].data[6], LM_TRACK_NO_NAV);
+    assert_true(told(&l, LM_REPORT_TRACK_RATE) == 0);
+    run(r, 12);
+    assert_int_equal(l.last[LM_REPORT_TRACK].data[5], LM_TRACK_OFF);
+    free_rig(r);
+}
+
+/* Ranging looks along the nose. A place that is tracked does not need to know where that is. */
+TEST(ranging_waits_for_the_attitude_and_a_place_does_not)
+{
+    static struct listener l;
+    struct rig *r = rig_that_tells(&l, NODE);
+    r->bus.pitch_deg = -20;
+    run(r, 1.5);
+    command(r, (struct lm_control){.kind = LM_CONTROL_RANGING});
+    run(r, 0.5);
+    assert_int_equal(l.last[LM_REPORT_TRACK].data[5], LM_TRACK_HELD);
+    l.kept[0] = 311, l.kept[1] = 312;
+    run(r, 3);
+    assert_int_equal(l.last[LM_REPORT_TRACK].data[5], LM_TRACK_SEARCHING);
+    assert_int_equal(l.last[LM_REPORT_TRACK].data[6], LM_TRACK_NO_NAV);
+    command(r, (struct lm_control){.kind = LM_CONTROL_DROP});
+    command(r, cursor_on_map);
+    command(r, (struct lm_control){.kind = LM_CONTROL_TRACK});
+    run(r, 0.5);
+    assert_int_equal(l.last[LM_REPORT_TRACK].data[4], LM_TRACK_FIXED);
+    assert_int_equal(l.last[LM_REPORT_TRACK].data[5], LM_TRACK_HELD);
+    free_rig(r);
+}
+
+/* A bus on which nothing can be sent: reports, services and SWAP are silent, and the display flies.
+ */
+TEST(on_a_bus_of_another_framing_nothing_is_told)
+{
+    static struct listener l;
+    struct rig *r = rig_that_tells(&l, NODE);
+    r->board.lent.bus_profile = &lm_bus_generic;
+    r->board.lent.obeys_controls = true;
+    assert_int_not_equal(lm_bus_generic.framing, LM_BUS_CANAEROSPACE);
+    assert_int_equal(lm_unit_init(&r->unit, &r->board.lent), LM_OK);
+    l.frames = l.states = 0;
+    run(r, 2);
+    assert_int_equal(l.frames + l.states, 0);
+    assert_int_equal(r->unit.count.frames > 50, 1);
+    const struct lm_can_frame gain = {
+        .id = LM_CONTROL_ID, .length = 8, .data = {9, LM_CANAS_LONG, 0, 1}};
+    const uint32_t refused = r->unit.control_bus.count.refused;
+    lm_canas_control_take(&r->unit.control_bus, &gain);
+    assert_int_equal(r->unit.control_bus.count.heard, 0);
+    assert_in_range(r->unit.control_bus.count.refused - refused, 0, 1);
     free_rig(r);
 }
