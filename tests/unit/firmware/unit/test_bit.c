@@ -6,6 +6,7 @@
 #include "lm/overlay.h"
 #include "unit_rig.h"
 
+#include <stdio.h>
 #include <string.h>
 
 enum { ROW_VERSION = 0, ROW_DATABASE = 1, ROW_NOW = 16, ROW_RESTART = 21 };
@@ -109,6 +110,33 @@ TEST(row_now_names_each_standing_fault)
         r->unit.flags = rows[i].flags;
         assert_string_equal(lm_bit_row(&r->unit, ROW_NOW).words, rows[i].words);
     }
+    free_rig(r);
+}
+
+TEST(without_a_database_the_bit_page_counts_no_levels_and_no_records)
+{
+    struct rig *r = start_rig();
+    char words[40];
+    snprintf(words, sizeof words, "LEVELS   %-8u RECORDS  %u", r->unit.map.db.lod_count,
+             r->unit.map.db.record_count);
+    assert_string_equal(lm_bit_row(&r->unit, ROW_DATABASE + 1).words, words);
+    r->image.bytes[100] ^= 1;
+    assert_int_equal(lm_unit_init(&r->unit, &r->board.lent), LM_OK);
+    assert_string_equal(lm_bit_row(&r->unit, ROW_DATABASE + 1).words,
+                        "LEVELS   0        RECORDS  0");
+    free_rig(r);
+}
+
+TEST(the_cause_of_a_restart_is_on_the_glass_for_ten_seconds)
+{
+    struct rig *r = make_rig();
+    r->board.lent.restart = "HUNG STEP";
+    assert_int_equal(lm_unit_init(&r->unit, &r->board.lent), LM_OK);
+    run(r, 9.9);
+    const struct lm_surface glass = glass_of(r);
+    assert_true(glass_find(&glass, "RESTART", r->unit.palette.warning, r->unit.palette.ink, NULL));
+    run(r, 0.2);
+    assert_false(glass_find(&glass, "RESTART", r->unit.palette.warning, r->unit.palette.ink, NULL));
     free_rig(r);
 }
 

@@ -110,6 +110,33 @@ TEST(each_table_hears_its_own_interface)
     free_rig(r);
 }
 
+/* As many as a board may have, the last one among them; priorities follow in their order. */
+TEST(each_of_three_further_tables_is_heard)
+{
+    static struct lm_bus_row row[LM_BUS_TABLES_MORE];
+    static struct lm_bus_profile table[LM_BUS_TABLES_MORE];
+    struct rig *r = make_rig();
+    struct lm_can_frame frame = {.length = 0};
+    const struct lm_can can = {.ctx = &frame, .receive = give_once};
+    r->board.lent.can = &can;
+    for (uint32_t t = 0; t < LM_BUS_TABLES_MORE; t++) {
+        row[t] = rows[0];
+        row[t].id += t;
+        row[t].priority = 200; /* counts as 63 */
+        table[t] = (struct lm_bus_profile){.name = "more", .rows = &row[t], .row_count = 1};
+        r->board.lent.tables[t] = (struct lm_board_table){&table[t], 0};
+    }
+    start(r);
+    for (uint32_t t = 0; t < LM_BUS_TABLES_MORE; t++) {
+        frame = (struct lm_can_frame){
+            .id = 700 + t, .length = 8, .data = {1, LM_CANAS_FLOAT, 0, 0, 0x44, 0x7a}};
+        lm_unit_step(&r->unit, 1000 * (t + 1));
+        assert_int_equal(r->unit.more[t].count.outcome[LM_BUS_VALUE], 1);
+        assert_int_equal(r->unit.nav.item[LM_BUS_TRUE_ALTITUDE][t].rank, ((t + 1) * 64 + 63) << 8);
+    }
+    free_rig(r);
+}
+
 TEST(a_second_interface_that_falls_silent_is_flagged)
 {
     struct rig *r = make_rig();
@@ -178,9 +205,36 @@ TEST(a_table_longer_than_any_is_refused)
     free_rig(r);
 }
 
+/* It is read into the pool of tiles, and not beyond it. */
+TEST(a_table_longer_than_the_pool_is_refused)
+{
+    struct rig *r = rig_with_table(0, 0, true);
+    uint8_t *pool = r->board.lent.tile_pool;
+    r->board.lent.tile_pool_bytes = 64;
+    memset(pool, 0xAA, 256);
+    start(r);
+    assert_int_equal(r->unit.map.open_status, LM_ERR_CORRUPT);
+    assert_ptr_equal(r->unit.bus.profile, &lm_bus_canas17);
+    for (int i = 64; i < 256; i++) {
+        assert_int_equal(pool[i], 0xAA);
+    }
+    free_rig(r);
+}
+
 TEST(a_table_that_the_flash_does_not_give_is_not_heard)
 {
     struct rig *r = rig_with_table(0, 0, true);
+    uint32_t refused = 0;
+    for (uint32_t read = 1; read < 12; read++) {
+        r->board.flash.reads = 0;
+        r->board.flash.fail_read = read;
+        start(r);
+        assert_true(r->unit.map.is_usable || r->unit.map.open_status == LM_ERR_IO);
+        assert_int_equal(r->unit.map.bus != NULL, r->unit.map.is_usable);
+        refused += !r->unit.map.is_usable;
+    }
+    assert_in_range(refused, 4, 10); /* header, classes, bands and table; tiles are read again */
+    r->board.flash.fail_read = 0;
     for (uint32_t every = 1; every < 8; every++) {
         r->board.flash.fail_every = every;
         start(r);

@@ -129,6 +129,41 @@ TEST(without_a_transmitter_there_is_noise_and_nothing_else)
     free_rig(b.r);
 }
 
+static double mean_grey(const struct rig *r)
+{
+    double sum = 0;
+    for (size_t i = 0; i < sizeof r->plane; i++) {
+        sum += r->plane[i];
+    }
+    return sum / sizeof r->plane;
+}
+
+/* A patch under half the greys of its law: what is there is darker by what the transmitter lost. */
+TEST(a_weak_transmitter_darkens_a_patch_and_the_next_one_with_a_sound_one_is_as_before)
+{
+    struct both p;
+    fly_both(&p, LM_MALFUNCTION_WEAK_TRANSMIT, 12, -1, 0);
+    struct rig *pair[2] = {p.sound.r, p.broken.r};
+    double grey[2], again[2];
+    for (int i = 0; i < 2; i++) {
+        command(pair[i], patch_here);
+        run(pair[i], 5);
+        assert_int_equal(pair[i]->unit.picture.sar.line, pair[i]->unit.picture.sar.lines);
+        grey[i] = mean_grey(pair[i]);
+    }
+    print_message("# mean grey %.1f, with a weak transmitter %.1f\n", grey[0], grey[1]);
+    assert_true(grey[1] < 0.8 * grey[0]);
+    p.broken.what[0].kind = -1;
+    for (int i = 0; i < 2; i++) {
+        run(pair[i], 10);
+        command(pair[i], (struct lm_control){.kind = LM_CONTROL_DROP});
+        run(pair[i], 4);
+        again[i] = mean_grey(pair[i]);
+    }
+    assert_true(fabs(again[0] - again[1]) < 0.1 * again[0]);
+    end(&p);
+}
+
 /* Azimuth of a pixel from the nose, which points up from the sector's apex. */
 static double azimuth_deg(const struct broken *b, int x, int y)
 {

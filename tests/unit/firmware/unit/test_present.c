@@ -130,6 +130,40 @@ TEST(the_cursor_can_be_put_at_a_place_and_is_designated_there)
     free_rig(r);
 }
 
+/* The rig's bus without its velocity, from some time on. */
+static struct {
+    struct rig *rig;
+    uint64_t from_us;
+} still;
+
+static int hear_without_velocity(void *ctx, struct lm_can_frame *frame)
+{
+    int status;
+    do {
+        status = still.rig->board.can.receive(ctx, frame);
+    } while (status == 1 && still.rig->now_us >= still.from_us &&
+             (frame->id == 1039 || frame->id == 1040));
+    return status;
+}
+
+TEST(without_a_velocity_nobody_knows_how_long_it_is_to_the_steerpoint)
+{
+    struct rig *r = make_rig();
+    const struct lm_can can = {.ctx = r, .receive = hear_without_velocity};
+    still.rig = r;
+    still.from_us = 2000000;
+    r->board.lent.can = &can;
+    assert_int_equal(lm_unit_init(&r->unit, &r->board.lent), LM_OK);
+    command(r, range_10);
+    command(r, (struct lm_control){.kind = LM_CONTROL_STEERPOINT,
+                                   .steerpoint = {true, {hs_bam(46.05), hs_bam(11)}}});
+    run(r, 2);
+    assert_true(says_time_to(r, 46.05, 150));
+    run(r, 12);
+    assert_true(says(r, "TTG --:--"));
+    free_rig(r);
+}
+
 /* A unit that stands still, steered to the place under a pixel. */
 static struct rig *steer_to_pixel(int32_t x, int32_t y)
 {

@@ -87,6 +87,35 @@ TEST(a_stuck_sender_is_named)
     free_rig(r);
 }
 
+TEST(a_stuck_sender_of_a_further_table_is_named_too)
+{
+    static const struct lm_bus_row rows[] = {{.name = "height",
+                                              .id = 700,
+                                              .field = LM_BUS_TRUE_ALTITUDE,
+                                              .stale_ms = 300,
+                                              .dead_ms = 2000,
+                                              .period_us = 100000,
+                                              .low = -1000,
+                                              .high = 30000,
+                                              .types = 1u << LM_CANAS_FLOAT,
+                                              .per_unit = 1}};
+    static const struct lm_bus_profile profile = {.name = "more", .rows = rows, .row_count = 1};
+    struct rig *r = make_rig();
+    r->board.lent.tables[1] = r->board.lent.tables[0] = (struct lm_board_table){&profile, 1};
+    assert_int_equal(lm_unit_init(&r->unit, &r->board.lent), LM_OK);
+    run(r, 1);
+    for (uint8_t code = 0; code < 15; code++) {
+        struct lm_bus_event events[LM_BUS_EVENTS];
+        struct lm_can_frame frame =
+            bus_frame(700, LM_CANAS_FLOAT, code < 3 ? code : 3, bus_float_bits(1000), r->now_us);
+        frame.data[0] = 31;
+        lm_bus_take(&r->unit.more[1], &frame, events);
+    }
+    run(r, 0.2);
+    assert_true(warns(r, "SENDER") && warns(r, "STUCK NODE 31"));
+    free_rig(r);
+}
+
 TEST(senders_that_differ_are_said)
 {
     struct rig *r = start();

@@ -616,6 +616,77 @@ TEST(an_offer_and_an_answer_are_never_put_together_to_one_page)
     close_wire(w);
 }
 
+/* Whole and sound, but of the exchange before. */
+TEST(an_answer_to_another_exchange_is_not_taken)
+{
+    struct rig *left;
+    struct wire *w = begin_alone(&left);
+    struct seat *s = &w->seat[0];
+    const struct lm_settings sea_page = {.page = {0, LM_PICTURE_SECTOR, LM_SECTOR_SEA}};
+    press_osb(left, 15);
+    fly(w, 0.05);
+    const uint8_t code = left->unit.swap.exchange;
+    for (int late = 1; late >= 0; late--) {
+        offer(s, &sea_page, (uint8_t)(code - late));
+        for (uint32_t i = 0; i <= LM_SWAP_PARTS; i++) { /* as an answer */
+            struct lm_can_frame *f = &s->waiting[(s->head - 1 - i) % QUEUE];
+            f->data[2] = i == 0 ? LM_SWAP_ANSWER : (uint8_t)(f->data[2] + LM_SWAP_OF_ANSWER);
+        }
+        fly(w, 0.05);
+        assert_int_equal(left->unit.swap.refused, 1);
+        assert_int_equal(w->sent, LM_SWAP_PARTS + 1 + (late ? 0 : 1)); /* TAKE of its own alone */
+    }
+    close_wire(w);
+}
+
+TEST(on_a_bus_that_only_hears_swap_says_that_it_cannot)
+{
+    struct rig *left;
+    struct wire *w = begin_alone(&left);
+    left->board.can.send = NULL;
+    press_osb(left, 15);
+    fly(w, 0.6);
+    assert_true(says_no_swap(left));
+    close_wire(w);
+}
+
+TEST(a_cursor_that_stays_ahead_goes_over_as_such)
+{
+    struct rig *left, *right;
+    struct wire *w = begin_pair(&left, &right);
+    command(left, lm_control_button(true, 8));
+    command(left, lm_control_button(false, 8));
+    fly(w, 0.1);
+    press_osb(left, 15);
+    fly(w, 0.1);
+    assert_int_equal(outcome(left, right), 1);
+    const struct lm_position there = right->unit.cursor.position, here = left->unit.cursor.position;
+    fly(w, 0.5);
+    assert_int_not_equal(right->unit.cursor.position.latitude, there.latitude);
+    assert_memory_equal(&left->unit.cursor.position, &here, sizeof here);
+    close_wire(w);
+}
+
+/* Before the first position a page has no place of a cursor. The other one's goes home then. */
+TEST(a_page_without_a_cursor_sends_the_other_ones_home)
+{
+    struct rig *left, *right;
+    struct wire *w = begin_pair(&left, &right);
+    left->bus.is_down = 1;
+    assert_int_equal(lm_unit_init(&left->unit, &left->board.lent), LM_OK);
+    command(right, (struct lm_control){.kind = LM_CONTROL_CURSOR,
+                                       .cursor = {FX_BAM_DEG(46), FX_BAM_DEG(221) / 20}});
+    fly(w, 0.1);
+    assert_false(left->unit.cursor.is_placed || right->unit.cursor.is_home);
+    press_osb(left, 15);
+    fly(w, 0.3);
+    assert_int_equal(left->unit.count.swaps, 1);
+    assert_int_equal(right->unit.count.swaps, 1);
+    assert_true(right->unit.cursor.is_placed && right->unit.cursor.is_home);
+    assert_int_equal(left->unit.cursor.position.latitude, FX_BAM_DEG(46));
+    close_wire(w);
+}
+
 TEST(exchanges_go_on_when_their_codes_begin_anew)
 {
     struct rig *left, *right;

@@ -474,6 +474,115 @@ TEST(a_display_of_a_size_nobody_promised_is_refused)
     free_rig(r);
 }
 
+TEST(a_pool_for_fewer_than_20_tiles_is_refused)
+{
+    struct rig *r = make_rig();
+    r->board.lent.tile_pool_bytes = 20 * sizeof(struct lm_tile) - 1;
+    assert_int_equal(lm_unit_init(&r->unit, &r->board.lent), LM_ERR_NO_MEMORY);
+    r->board.lent.tile_pool_bytes = 20 * sizeof(struct lm_tile);
+    assert_int_equal(lm_unit_init(&r->unit, &r->board.lent), LM_OK);
+    free_rig(r);
+}
+
+/* Steps of 30 ms have time for fewer lines than become due in them: those come with later steps. */
+TEST(a_patch_is_the_same_however_seldom_the_unit_is_stepped)
+{
+    struct rig *often = start_rig(), *seldom = start_rig();
+    struct rig *both[2] = {often, seldom};
+    for (int i = 0; i < 2; i++) {
+        const uint64_t step_us = i == 0 ? STEP_US : 30000;
+        command(both[i], patch_from_afar);
+        for (uint64_t now_us = 0; now_us < 9000000; now_us += step_us) {
+            both[i]->bus.now_us = now_us;
+            lm_unit_step(&both[i]->unit, now_us);
+        }
+        assert_int_equal(both[i]->unit.picture.sar.line, both[i]->unit.picture.sar.lines);
+    }
+    assert_int_equal(plane_sum(often), plane_sum(seldom));
+    free_rig(often);
+    free_rig(seldom);
+}
+
+TEST(a_cursor_that_was_put_before_the_first_position_stays_where_it_is)
+{
+    struct rig *r = start_rig();
+    const struct lm_position place = {FX_BAM_DEG(46), FX_BAM_DEG(221) / 20};
+    r->bus.is_down = 1;
+    command(r, (struct lm_control){.kind = LM_CONTROL_CURSOR, .cursor = place});
+    run(r, 0.5);
+    r->bus.is_down = 0;
+    run(r, 1.5);
+    assert_true(lit_pixels(r) > 1000);
+    assert_memory_equal(&r->unit.cursor.position, &place, sizeof place);
+    free_rig(r);
+}
+
+/* From some time on, latitude and longitude come from another table's sender. */
+static struct {
+    struct rig *rig;
+    uint64_t from_us;
+} other;
+
+static int hear_from_another(void *ctx, struct lm_can_frame *frame)
+{
+    const int status = other.rig->board.can.receive(ctx, frame);
+    if (status == 1 && other.rig->now_us >= other.from_us &&
+        (frame->id == 1036 || frame->id == 1037)) {
+        frame->id -= 1036 - 700;
+    }
+    return status;
+}
+
+TEST(a_position_of_another_sender_starts_the_picture_anew_and_sends_the_cursor_home)
+{
+    static const struct lm_bus_row rows[] = {{.name = "latitude",
+                                              .id = 700,
+                                              .field = LM_BUS_LATITUDE,
+                                              .stale_ms = 500,
+                                              .dead_ms = 5000,
+                                              .period_us = 100000,
+                                              .low = -90,
+                                              .high = 90,
+                                              .types = 1u << LM_CANAS_FLOAT,
+                                              .per_unit = 1},
+                                             {.name = "longitude",
+                                              .id = 701,
+                                              .field = LM_BUS_LONGITUDE,
+                                              .stale_ms = 500,
+                                              .dead_ms = 5000,
+                                              .period_us = 100000,
+                                              .low = -180,
+                                              .high = 180,
+                                              .types = 1u << LM_CANAS_FLOAT,
+                                              .per_unit = 1}};
+    static const struct lm_bus_profile profile = {.name = "other", .rows = rows, .row_count = 2};
+    struct rig *r = make_rig();
+    const struct lm_can can = {.ctx = r, .receive = hear_from_another};
+    other.rig = r;
+    other.from_us = UINT64_MAX;
+    r->board.lent.can = &can;
+    r->board.lent.tables[0] = (struct lm_board_table){&profile, 0};
+    assert_int_equal(lm_unit_init(&r->unit, &r->board.lent), LM_OK);
+    command(r, range_10);
+    run(r, 2);
+    command(r, (struct lm_control){.kind = LM_CONTROL_CURSOR,
+                                   .cursor = {FX_BAM_DEG(46), FX_BAM_DEG(221) / 20}});
+    run(r, 1);
+    const uint16_t rank = r->unit.ownship.position_origin.rank;
+    other.from_us = r->now_us;
+    uint32_t least = lit_pixels(r);
+    assert_true(least > 10000);
+    for (int i = 0; i < 1000 && r->unit.ownship.position_origin.rank == rank; i++) {
+        run(r, 0.01);
+    }
+    run(r, 0.05);
+    assert_true(lit_pixels(r) < least / 4);
+    assert_true(r->unit.cursor.is_home);
+    run(r, 3);
+    assert_true(lit_pixels(r) > 10000);
+    free_rig(r);
+}
+
 TEST(a_radar_table_that_breaks_its_contract_is_refused)
 {
     struct rig *r = make_rig();
