@@ -54,7 +54,7 @@ TEST_WITH(records_with_a_number_out_of_bounds_are_refused, set_up, tear_down)
     const struct signature_world *f = *state;
     assert_int_equal(lm_signature_check(&f->signature, CHIPS), LM_OK);
     assert_int_equal(lm_signature_check(&f->signature, CHIPS - 1), LM_ERR_CORRUPT);
-    for (int k = 0; k < 10; k++) {
+    for (int k = 0; k < 12; k++) {
         struct lm_signature s = f->signature;
         switch (k) {
         case 0:
@@ -87,6 +87,12 @@ TEST_WITH(records_with_a_number_out_of_bounds_are_refused, set_up, tear_down)
         case 9:
             s.chip0 = 1;
             break;
+        case 10:
+            s.height_mm = LM_SIGNATURE_HEIGHT_MAX_MM + 1;
+            break;
+        case 11: /* as many chips as there are, and 2^32 before them */
+            s.chip0 = 0u - CHIPS;
+            break;
         }
         assert_int_equal(lm_signature_check(&s, CHIPS), LM_ERR_CORRUPT); /* not sealed */
         seal_signature(&s);
@@ -96,8 +102,33 @@ TEST_WITH(records_with_a_number_out_of_bounds_are_refused, set_up, tear_down)
     assert_int_equal(lm_chip_check(&c, 0, 3, 1), LM_OK);
     assert_int_equal(lm_chip_check(&c, 0, 4, 1), LM_ERR_CORRUPT);
     assert_int_equal(lm_chip_check(&c, 1, 3, 1), LM_ERR_CORRUPT);
+    assert_int_equal(lm_chip_check(&c, 0, 3, 0), LM_ERR_CORRUPT);
     c.level[9][9] ^= 1;
     assert_int_equal(lm_chip_check(&c, 0, 3, 1), LM_ERR_CORRUPT);
+}
+
+TEST_WITH(a_record_that_is_not_there_or_not_read_is_told_apart, set_up, tear_down)
+{
+    struct signature_world *f = *state;
+    struct lm_signature s;
+    assert_int_equal(lm_signature_read(&f->db, 0, &s, POLLS), LM_OK);
+    assert_int_equal(lm_signature_read(&f->db, 1, &s, POLLS), LM_ERR_RANGE);
+    f->flash.fail_every = 1;
+    assert_int_equal(lm_signature_read(&f->db, 0, &s, POLLS), LM_ERR_IO);
+    f->flash.fail_every = 0;
+    f->with.bytes[f->with.head_at + 64 + 30] ^= 1;
+    assert_int_equal(lm_signature_read(&f->db, 0, &s, POLLS), LM_ERR_CORRUPT);
+}
+
+/* A view from which nothing was seen returns nothing. */
+TEST_WITH(a_cross_section_is_that_of_its_code_and_of_code_0_none, set_up, tear_down)
+{
+    const struct signature_world *f = *state;
+    struct lm_signature s = f->signature;
+    assert_int_equal(lm_signature_rcs_dbsm_q8(&s, 0, hs_bam(10)), 22 * 256 + 128);
+    s.rcs[0][0] = 0;
+    assert_int_equal(lm_signature_rcs_dbsm_q8(&s, 0, hs_bam(10)), LM_RCS_NONE_DBSM_Q8);
+    assert_int_equal(lm_signature_rcs_dbsm_q8(&s, 0, hs_bam(30)), 22 * 256 + 128);
 }
 
 TEST_WITH(a_head_that_does_not_hold_makes_the_image_unsound, set_up, tear_down)
@@ -252,6 +283,116 @@ TEST_WITH(chips_that_are_shown_keep_their_slots_when_new_ones_come, set_up, tear
         assert_int_equal(lm_chip_of(&candidates.candidate[i]) != NULL, i < LM_CHIPS_MAX);
     }
     assert_int_equal(f->chips.count.left_out, NEW);
+}
+
+static void seal_chip_at(struct signature_world *f, uint32_t number, const struct lm_chip *c)
+{
+    memcpy(f->with.bytes + f->with.chips_at + number * LM_CHIP_BYTES, c, sizeof *c);
+}
+
+/* Chips as weak as they come: one pixel of -20 dBsm, and none at all. */
+TEST_WITH(a_weak_chip_keeps_its_power_and_one_without_any_shows_nothing, set_up, tear_down)
+{
+    struct signature_world *f = *state;
+    const struct lm_target t = target_with_signature(46, 11, 30);
+    for (int lit = 0; lit < 2; lit++) {
+        struct lm_target_candidates candidates;
+        struct lm_chip c = make_chip(16, 0);
+        memset(c.level, 0, sizeof c.level);
+        c.level[20][30] = lit ? code_of(-20) : 0;
+        seal_chip(&c);
+        seal_chip_at(f, 16, &c);
+        lm_chips_init(&f->chips, &f->db, &f->signature);
+        choose(f, &t, 1, 1000, &candidates);
+        assert_true(serve_chips(f));
+        const struct lm_chip_slot *slot = lm_chip_of(&candidates.candidate[0]);
+        assert_non_null(slot);
+        const uint32_t power = slot->power_q31[slot->side][slot->side];
+        if (lit) {
+            assert_true(fabs(power / 2147483648.0 - 1) < 1e-6);
+            assert_true(fabs(slot->total_dbsm_q8 / 256.0 + 20) < 0.05);
+            assert_int_equal(slot->lit.row, 10);
+            assert_int_equal(slot->lit.column, 15);
+        } else {
+            assert_int_equal(power, 0);
+            assert_int_equal(slot->total_dbsm_q8, LM_SIGNATURE_CODE_ZERO_DBSM_Q8);
+            assert_int_equal(slot->lit.row_end, 0);
+        }
+        assert_true(slot->dark.row_end > 0); /* its shadow is there */
+    }
+}
+
+/* Two signatures with the same chips, and one target seen under either depression. */
+TEST_WITH(chips_of_another_signature_depression_or_reduction_are_others, set_up, tear_down)
+{
+    struct signature_world *f = *state;
+    const struct lm_signature both[2] = {f->signature, f->signature};
+    struct lm_target t[2] = {target_with_signature(46, 11, 30), target_with_signature(46, 11, 30)};
+    t[1].signature = 1;
+    const struct lm_target_set set = {
+        .items = t, .count = 2, .signatures = both, .signature_count = 2};
+    const struct lm_target_query scene = {.position = {hs_bam(46), hs_bam(11)}, .reach_m = 1000};
+    struct lm_geo_origin origin;
+    lm_geo_set_origin(&origin, scene.position);
+    lm_chips_init(&f->chips, &f->db, both);
+    struct lm_chip_query query = {.centre = scene.position,
+                                  .reach_m = scene.reach_m,
+                                  .radar = lm_geo_direct(&origin, FX_BAM_DEG(270), 20000 * 256),
+                                  .heights = {6000 * 1024, 0},
+                                  .cell_mm = 1000,
+                                  .side_most = LM_CHIP_SIDE};
+    struct lm_target_candidates candidates;
+    lm_target_candidates_select(&candidates, &set, &scene);
+    lm_chips_choose(&f->chips, &candidates, &query);
+    const struct lm_chip_slot *low = candidates.candidate[0].chip;
+    assert_ptr_not_equal(low, candidates.candidate[1].chip);
+    assert_int_equal(low->key.depression, 0);
+    query.heights.antenna_m_q10 = 12000 * 1024; /* 31 degrees */
+    lm_chips_choose(&f->chips, &candidates, &query);
+    assert_int_equal(candidates.candidate[0].chip->key.depression, 1);
+    /* No more pixels than asked for, nor fewer than 4. */
+    query.side_most = 10;
+    lm_chips_choose(&f->chips, &candidates, &query);
+    assert_int_equal(candidates.candidate[0].chip->side, 8);
+    query.side_most = 1;
+    lm_chips_choose(&f->chips, &candidates, &query);
+    assert_int_equal(candidates.candidate[0].chip->side, LM_CHIP_SIDE >> 4);
+    /* Out of the picture nobody needs it. */
+    query.centre = lm_geo_direct(&origin, 0, (1000 + LM_TARGET_EXTENT_M + 2) * 256);
+    lm_chips_choose(&f->chips, &candidates, &query);
+    assert_null(candidates.candidate[0].chip);
+    query.centre = lm_geo_direct(&origin, 0, (1000 + LM_TARGET_EXTENT_M - 2) * 256);
+    lm_chips_choose(&f->chips, &candidates, &query);
+    assert_non_null(candidates.candidate[0].chip);
+}
+
+/* The flash still writes the chip that was asked for when another picture wants as many as there
+ * are slots: none of them gets that one's. */
+TEST_WITH(a_slot_is_not_given_away_while_it_is_read, set_up, tear_down)
+{
+    struct signature_world *f = *state;
+    struct lm_target t[LM_CHIPS_MAX + 1];
+    struct lm_target_candidates first, candidates;
+    for (int k = 0; k <= LM_CHIPS_MAX; k++) {
+        t[k] = target_with_signature(46, 11, k * 360.0 / ASPECTS);
+    }
+    f->flash.busy_polls = 3;
+    choose(f, t, 1, 1000, &first);
+    lm_chips_service(&f->chips, &f->tiles);
+    lm_tile_cache_service(&f->tiles, 0, 1);
+    lm_chips_service(&f->chips, &f->tiles); /* which has nothing to do yet */
+    assert_ptr_equal(f->chips.busy, first.candidate[0].chip);
+    assert_int_equal(f->chips.count.read, 0);
+    choose(f, t + 1, LM_CHIPS_MAX, 1000, &candidates);
+    assert_int_equal(f->chips.count.left_out, 1);
+    for (uint32_t i = 0; i < candidates.count; i++) {
+        assert_ptr_not_equal(candidates.candidate[i].chip, f->chips.busy);
+    }
+    f->flash.busy_polls = f->flash.now.polls_left = 0;
+    assert_true(serve_chips(f));
+    assert_int_equal(f->chips.count.read, LM_CHIPS_MAX);
+    choose(f, t, LM_CHIPS_MAX, 1000, &candidates);
+    assert_non_null(lm_chip_of(&candidates.candidate[0])); /* it was read to its end */
 }
 
 /* ---- laying ---- */
