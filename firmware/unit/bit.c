@@ -2,14 +2,7 @@
 
 #include "lm/version.h"
 
-enum {
-    ROW_COUNTERS = 3,
-    COUNTER_ROWS = 13,
-    ROW_NOW = 16,
-    ROW_FAULTS = 17,
-    ROW_RESTART = 21,
-    ROW_BROKEN = 22
-};
+enum { ROW_COUNTERS = 3, COUNTER_ROWS = 13, ROW_NOW = 16, ROW_FAULTS = 17, ROW_RESTART = 21 };
 enum { COLUMN_NUMBER = 9, COLUMN_SECOND = 18, COLUMN_SECOND_NUMBER = 27 };
 
 static void add_counter(struct lm_text *t, const char *name, uint32_t value, uint32_t column)
@@ -253,7 +246,7 @@ struct lm_text lm_bit_row(const struct lm_unit *u, uint32_t row)
         add_fault(u, row - ROW_FAULTS, &t);
     } else if (row == ROW_RESTART) {
         add_restart(u, &t);
-    } else if (row == ROW_BROKEN) {
+    } else { /* the last one */
         add_broken(&u->malfunctions.now, &t);
     }
     return t;

@@ -327,7 +327,7 @@ static void take_board_control(struct lm_unit *u, const struct lm_control *contr
 
 void lm_take_controls(struct lm_unit *u, uint64_t now_us)
 {
-    struct lm_press press;
+    struct lm_press press; /* each button has one in a step at most */
     for (uint32_t i = 0; i < LM_BUTTONS && lm_keys_held(&u->keys, now_us, &press); i++) {
         lm_apply_effects(u, lm_page_press(&u->page, press), now_us);
     }

@@ -61,7 +61,7 @@ void lm_follow_cursor(struct lm_unit *u, uint64_t now_us)
     lm_cursor_locate(&u->cursor, &scene);
     u->cursor_elevation_m_q10 = lm_elevation_at(u, u->cursor.position);
     u->ground_m_q10 = lm_elevation_at(u, lm_ownship_position(&u->ownship));
-    if (u->picture.is_cursor_awaited && u->cursor.is_placed) {
+    if (u->picture.is_cursor_awaited) { /* the step has placed it */
         lm_apply_effects(u, LM_EFFECT_SECTOR, now_us);
     }
     follow_range(u, now_us);

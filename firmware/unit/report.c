@@ -155,18 +155,15 @@ void lm_send_reports(struct lm_unit *u, uint64_t now_us)
     const uint32_t sets = lm_canas_report_due(&u->report, now_us);
     if (sets != 0) {
         struct lm_report values = {.is_stale = (u->flags & LM_FLAG_NAV_STALE) != 0};
-        if (sets >> LM_REPORT_CURSOR & 1) {
-            tell_cursor(u, &values);
-        }
+        /* These two have the shortest period, which divides the others': they are due with each. */
+        tell_cursor(u, &values);
+        tell_track(u, &values);
         if (sets >> LM_REPORT_PLACE & 1) {
             tell_place(u, &values);
             lm_canas_service_tell_state(&u->service, now_us);
         }
         if (sets >> LM_REPORT_STATE & 1) {
             tell_state(u, &values);
-        }
-        if (sets >> LM_REPORT_TRACKED & 1) {
-            tell_track(u, &values);
         }
         lm_canas_report_begin(&u->report, sets, &values, now_us);
     }

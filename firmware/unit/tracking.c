@@ -179,6 +179,7 @@ static const char *name_of(uint8_t kind)
     return kind == LM_TRACK_FIXED ? "FTT" : kind == LM_TRACK_MOVER ? "GMTT" : "AGR";
 }
 
+/* `loss`: enum lm_track_loss. */
 static const char *loss_word(uint8_t loss)
 {
     static const char words[LM_TRACK_LOSSES][8] = {
@@ -186,7 +187,7 @@ static const char *loss_word(uint8_t loss)
         [LM_TRACK_LIMITS] = "LIMITS", [LM_TRACK_SHADOW] = "SHADOW",  [LM_TRACK_WEAK] = "WEAK",
         [LM_TRACK_NOTCH] = "NOTCH",   [LM_TRACK_NOTHING] = "NO TGT",
     };
-    return words[loss < LM_TRACK_LOSSES ? loss : 0];
+    return words[loss];
 }
 
 /* "FTT 12.3NM", "GMTT 8.0NM 23KT", "GMTT COAST NOTCH", "GMTT LOST NOTCH". */

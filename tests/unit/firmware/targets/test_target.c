@@ -53,6 +53,18 @@ TEST(a_number_out_of_range_is_refused_under_a_right_checksum)
     refused((t = sound_target(), t.scatterers[0].size_mm[0] = 0, t));
     refused((t = sound_target(), t.scatterers[0].size_mm[1] = LM_SHAPE_SIZE_MAX_MM + 1, t));
     refused((t = sound_target(), t.scatterers[0].offset_mm[2] = -LM_TARGET_OFFSET_MAX_MM - 1, t));
+    /* A point with a signature that no image has, with bodies, or one that is a beacon, too. */
+    const struct lm_target point = point_at(46, 11, 250, 10);
+    refused((t = point, t.signature = 1, t));
+    refused((t = point, t.flags = LM_TARGET_HAS_SIGNATURE, t.signature = LM_DB_SIGNATURES_MAX, t));
+    refused((t = sound_target(), t.flags = LM_TARGET_HAS_SIGNATURE, t));
+    refused((t = sound_target(), t.flags = LM_TARGET_IS_BEACON, t));
+    refused((t = point, t.flags = LM_TARGET_HAS_SIGNATURE | LM_TARGET_IS_BEACON, t));
+    t = point;
+    t.flags = LM_TARGET_HAS_SIGNATURE;
+    t.signature = LM_DB_SIGNATURES_MAX - 1;
+    seal_target(&t);
+    assert_int_equal(lm_target_check(&t), LM_OK);
     t = sound_target();
     t.latitude = hs_bam(-90);
     t.scatterers[0].offset_mm[1] = LM_TARGET_OFFSET_MAX_MM;

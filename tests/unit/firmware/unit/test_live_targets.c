@@ -614,3 +614,34 @@ TEST(a_target_stays_where_it_is_when_the_clock_steps)
     assert_in_range(reckoned_ms(r), 790, 900);
     free_rig(r);
 }
+
+/* Over water or not: in SEA what is at the cursor is tracked, and this one is told by the bus. */
+TEST(a_live_target_is_tracked_until_it_goes)
+{
+    struct rig *r = tell_in();
+    tell_target(r);
+    run(r, 0.1);
+    assert_int_equal(r->unit.live.live.count, 1);
+    command(r, (struct lm_control){.kind = LM_CONTROL_SECTOR, .sector = {LM_SECTOR_SEA, 0}});
+    command(r, (struct lm_control){.kind = LM_CONTROL_CURSOR,
+                                   .cursor = r->unit.live.live.target[0].position});
+    command(r, (struct lm_control){.kind = LM_CONTROL_TRACK});
+    run(r, 0.5);
+    const struct lm_track *t = &r->unit.track;
+    assert_int_equal(t->state, LM_TRACK_HELD);
+    assert_true(t->has_target && t->is_live);
+    assert_int_equal(t->index, 0);
+    assert_in_range(t->seen.speed_mm_s, 4990, 5010); /* 100 times 0.05 m/s */
+    assert_int_equal(t->seen.elevation_m_q10, 300 * 1024);
+    for (int i = 0; i < 200 && r->unit.live.live.count != 0; i++) {
+        run(r, 0.1);
+    }
+    assert_int_equal(r->unit.live.live.count, 0);
+    run(r, 0.5);
+    assert_int_equal(t->state, LM_TRACK_COASTING);
+    assert_int_equal(t->loss, LM_TRACK_NOTHING);
+    run(r, LM_TRACK_COAST_US / 1e6 + 0.5);
+    assert_int_equal(t->state, LM_TRACK_OFF);
+    assert_int_equal(t->loss, LM_TRACK_NOTHING);
+    free_rig(r);
+}

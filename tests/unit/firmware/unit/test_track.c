@@ -493,3 +493,155 @@ TEST(a_cursor_ahead_of_the_aircraft_is_held_before_it_is_used)
         free_rig(r);
     }
 }
+
+/* ---- which target it is ---- */
+
+enum { CROWD = 20 };
+static struct lm_target crowd[CROWD];
+
+/* A track of what is at the cursor, with so many of the crowd. */
+static struct rig *rig_in_crowd(uint32_t count)
+{
+    struct rig *r = rig_at(46.01, 11.03);
+    for (uint32_t i = 0; i < count; i++) {
+        seal_target(&crowd[i]);
+    }
+    r->unit.map.target_set.items = crowd;
+    r->unit.map.target_set.count = count;
+    command(r, track_it);
+    run(r, 0.5);
+    assert_int_equal(track_of(r)->state, LM_TRACK_HELD);
+    return r;
+}
+
+/* Twenty around the cursor, more than a step looks at; each is the nearest once. */
+TEST(of_many_targets_the_nearest_is_tracked)
+{
+    for (uint32_t nearest = 0; nearest < CROWD; nearest += 6) {
+        for (uint32_t i = 0; i < CROWD; i++) {
+            const double away_m = i == nearest ? 20 : 40 + (i * 7 % CROWD) * 3;
+            crowd[i] = point_at(46.01 + (i % 2 ? away_m : -away_m) / 111150, 11.03, 120, 30);
+            crowd[i].id = i;
+        }
+        struct rig *r = rig_in_crowd(CROWD);
+        assert_true(track_of(r)->has_target);
+        assert_int_equal(track_of(r)->index, nearest);
+        free_rig(r);
+    }
+}
+
+/* The nearest is too weak to be seen: the other one is tracked, whichever comes first. */
+TEST(a_target_that_cannot_be_seen_does_not_stand_before_one_that_can)
+{
+    for (uint32_t weak = 0; weak < 2; weak++) {
+        crowd[weak] = point_at(46.01, 11.03, 120, -80);
+        crowd[1 - weak] = point_at(46.01 + 50 / 111150.0, 11.03, 120, 30);
+        crowd[weak].flags = crowd[1 - weak].flags = 0;
+        struct rig *r = rig_in_crowd(2);
+        is_near(hs_degrees(track_of(r)->seen.position.latitude), 46.01, 50 / 111150.0 + 1e-6);
+        assert_true(track_of(r)->has_target);
+        free_rig(r);
+    }
+}
+
+TEST(what_moves_is_not_tracked_as_what_stands)
+{
+    crowd[0] = point_at(46.01, 11.03, 120, 30);
+    crowd[0].speed_mm_s = 100;
+    crowd[0].leg_m = 100;
+    struct rig *r = rig_in_crowd(1);
+    assert_int_equal(track_of(r)->kind, LM_TRACK_FIXED);
+    assert_false(track_of(r)->has_target); /* the place itself */
+    free_rig(r);
+}
+
+/* A sphere of 2 m radius has pi r^2: 11 dBsm, from any side and with a point's law. */
+TEST(a_target_of_bodies_is_as_strong_as_they_are)
+{
+    double over_noise_db[2];
+    for (int is_body = 0; is_body < 2; is_body++) {
+        crowd[0] = point_at(46.01, 11.03, 120, 10 * log10(M_PI * 4));
+        if (is_body) {
+            add_scatterer(&crowd[0], LM_SHAPE_SPHERE, 2000, 0, 0, 0, 0, 0);
+        }
+        struct rig *r = rig_in_crowd(1);
+        assert_true(track_of(r)->has_target);
+        over_noise_db[is_body] = track_of(r)->seen.signal_db_q8 / 256.0;
+        free_rig(r);
+    }
+    is_near(over_noise_db[1], over_noise_db[0], 0.1);
+}
+
+TEST(a_mover_faster_than_the_gates_is_in_no_track)
+{
+    const double most_m_s = lm_radar_default.mode[LM_SECTOR_GMT].gate_mm_s[1] / 1000.0;
+    struct rig *r = gmt_rig(180, most_m_s * 0.98, 20);
+    assert_int_equal(track_of(r)->state, LM_TRACK_HELD);
+    free_rig(r);
+    r = gmt_rig(180, most_m_s * 1.03, 20);
+    assert_int_equal(track_of(r)->state, LM_TRACK_SEARCHING);
+    assert_int_equal(track_of(r)->loss, LM_TRACK_NOTCH);
+    free_rig(r);
+}
+
+/* ---- where it may be ---- */
+
+static enum lm_track_loss loss_at(double height_m, double ahead_m)
+{
+    struct rig *r = make_rig();
+    r->bus.height_m = height_m;
+    r->bus.speed_m_s = 0; /* at 45.95 N */
+    assert_int_equal(lm_unit_init(&r->unit, &r->board.lent), LM_OK);
+    command(r, range_10);
+    run(r, 1.5);
+    cursor_to(r, 45.95 + ahead_m / 111150, 11);
+    command(r, track_it);
+    run(r, 1);
+    const enum lm_track_loss loss = track_of(r)->loss;
+    assert_int_equal(track_of(r)->state == LM_TRACK_HELD, loss == LM_TRACK_SOUND);
+    free_rig(r);
+    return loss;
+}
+
+/* The map's hills are 100 m high on this meridian. */
+TEST(a_place_steeper_than_the_antenna_tilts_is_beyond_its_limits)
+{
+    const double most = tan(hs_degrees(lm_radar_default.antenna.tilt_max) * M_PI / 180);
+    assert_int_equal(loss_at(3100, 3000 / most * 1.05), LM_TRACK_SOUND);
+    assert_int_equal(loss_at(3100, 3000 / most * 0.95), LM_TRACK_LIMITS);
+    /* Nothing stands between the aircraft and what is nearer than two kilometres. */
+    assert_int_equal(loss_at(400, 1500), LM_TRACK_SOUND);
+}
+
+/* A jump of the navigation takes the aircraft 555 km away. */
+TEST(what_is_beyond_300_km_is_lost)
+{
+    struct rig *r = rig_at(46.01, 11.03);
+    command(r, track_it);
+    run(r, 0.5);
+    assert_int_equal(track_of(r)->state, LM_TRACK_HELD);
+    r->bus.jump_degrees = -5;
+    run(r, LM_TRACK_COAST_US / 1e6 + 2);
+    assert_int_equal(track_of(r)->state, LM_TRACK_OFF);
+    assert_int_equal(track_of(r)->loss, LM_TRACK_LIMITS);
+    free_rig(r);
+}
+
+/* The map ends some 12 km ahead; the nose meets the plane of its ground at 24 km, where nothing is.
+ */
+TEST(there_is_nothing_to_range_where_the_map_ends)
+{
+    struct rig *r = fly_rig();
+    command(r, (struct lm_control){.kind = LM_CONTROL_RANGE, .range_nm = 20});
+    r->bus.speed_m_s = 0;
+    r->bus.pitch_deg = -atan2(1900, 8000) * 180 / M_PI;
+    command(r, range_it);
+    run(r, 1.5);
+    assert_int_equal(track_of(r)->state, LM_TRACK_HELD);
+    is_near(track_of(r)->seen.ground_m_q8 / 256.0, 8000, 150);
+    r->bus.pitch_deg = -atan2(1900, 24000) * 180 / M_PI;
+    run(r, 2);
+    assert_int_equal(track_of(r)->state, LM_TRACK_SEARCHING);
+    assert_int_equal(track_of(r)->loss, LM_TRACK_NOTHING);
+    free_rig(r);
+}
