@@ -428,7 +428,7 @@ TEST(the_image_that_brought_the_tables_neither_comes_anew_nor_goes)
     run(w->rig, 0.5);
     assert_int_equal(u->map.image_count, 1);
     assert_int_equal(u->map.db.base, w->parts[1].offset);
-    for (int i = 0; i < 2; i++) {
+    for (uint32_t i = 0; i < 2; i++) {
         tell(w, 2, i * w->parts[1].bytes);
         run(w->rig, 0.1);
         assert_int_equal(u->refusal, LM_REFUSED_MAP);
