@@ -503,20 +503,6 @@ TEST(a_patch_is_the_same_however_seldom_the_unit_is_stepped)
     free_rig(seldom);
 }
 
-TEST(a_cursor_that_was_put_before_the_first_position_stays_where_it_is)
-{
-    struct rig *r = start_rig();
-    const struct lm_position place = {FX_BAM_DEG(46), FX_BAM_DEG(221) / 20};
-    r->bus.is_down = 1;
-    command(r, (struct lm_control){.kind = LM_CONTROL_CURSOR, .cursor = place});
-    run(r, 0.5);
-    r->bus.is_down = 0;
-    run(r, 1.5);
-    assert_true(lit_pixels(r) > 1000);
-    assert_memory_equal(&r->unit.cursor.position, &place, sizeof place);
-    free_rig(r);
-}
-
 /* From some time on, latitude and longitude come from another table's sender. */
 static struct {
     struct rig *rig;
@@ -533,7 +519,7 @@ static int hear_from_another(void *ctx, struct lm_can_frame *frame)
     return status;
 }
 
-TEST(a_position_of_another_sender_starts_the_picture_anew_and_sends_the_cursor_home)
+static struct rig *rig_with_another(uint64_t from_us)
 {
     static const struct lm_bus_row rows[] = {{.name = "latitude",
                                               .id = 700,
@@ -556,14 +542,38 @@ TEST(a_position_of_another_sender_starts_the_picture_anew_and_sends_the_cursor_h
                                               .types = 1u << LM_CANAS_FLOAT,
                                               .per_unit = 1}};
     static const struct lm_bus_profile profile = {.name = "other", .rows = rows, .row_count = 2};
+    static struct lm_can can;
     struct rig *r = make_rig();
-    const struct lm_can can = {.ctx = r, .receive = hear_from_another};
+    can = (struct lm_can){.ctx = r, .receive = hear_from_another};
     other.rig = r;
-    other.from_us = UINT64_MAX;
+    other.from_us = from_us;
     r->board.lent.can = &can;
     r->board.lent.tables[0] = (struct lm_board_table){&profile, 0};
     assert_int_equal(lm_unit_init(&r->unit, &r->board.lent), LM_OK);
     command(r, range_10);
+    return r;
+}
+
+/* Whoever tells it. */
+TEST(a_cursor_that_was_put_before_the_first_position_stays_where_it_is)
+{
+    const struct lm_position place = {FX_BAM_DEG(46), FX_BAM_DEG(221) / 20};
+    for (int is_other = 0; is_other < 2; is_other++) {
+        struct rig *r = rig_with_another(is_other ? 0 : UINT64_MAX);
+        r->bus.is_down = 1;
+        command(r, (struct lm_control){.kind = LM_CONTROL_CURSOR, .cursor = place});
+        run(r, 0.5);
+        r->bus.is_down = 0;
+        run(r, 1.5);
+        assert_true(lit_pixels(r) > 1000);
+        assert_memory_equal(&r->unit.cursor.position, &place, sizeof place);
+        free_rig(r);
+    }
+}
+
+TEST(a_position_of_another_sender_starts_the_picture_anew_and_sends_the_cursor_home)
+{
+    struct rig *r = rig_with_another(UINT64_MAX);
     run(r, 2);
     command(r, (struct lm_control){.kind = LM_CONTROL_CURSOR,
                                    .cursor = {FX_BAM_DEG(46), FX_BAM_DEG(221) / 20}});
