@@ -1,6 +1,7 @@
 /* Images that come and go in flight: what is drawn behind it is what a start with the same images
  * draws, and nothing of one that has gone is read any more. The flash is late, wrong, or hangs. */
 #include "check.h"
+#include "lm/bit.h"
 #include "lm/image.h"
 #include "lm/radar_record.h"
 #include "unit_rig.h"
@@ -8,7 +9,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { IMAGES = 4, ROUNDS = 60 };
+enum { IMAGES = 4, ROUNDS = 60, ROW_DATABASE = 1 };
 
 /* Behind the rig's country in its flash: a finer image, another of the same cells, one of other
  * classes. The first and the second overlap. */
@@ -468,11 +469,14 @@ TEST(nobody_signed_one_of_the_images_as_long_as_that_is_there)
     comes(w, 2);
     run(w->rig, 0.1);
     assert_int_equal(u->flags & LM_FLAG_UNSIGNED, LM_FLAG_UNSIGNED);
+    assert_non_null(strstr(lm_bit_row(u, ROW_DATABASE).words, "  +2")); /* beside the first */
     goes(w, 2);
     run(w->rig, 0.1);
     assert_int_equal(u->flags & LM_FLAG_UNSIGNED, LM_FLAG_UNSIGNED);
+    assert_non_null(strstr(lm_bit_row(u, ROW_DATABASE).words, "  +1"));
     goes(w, 1);
     run(w->rig, 0.1);
+    assert_null(strchr(lm_bit_row(u, ROW_DATABASE).words, '+'));
     assert_int_equal(u->flags & LM_FLAG_UNSIGNED, 0);
     end(w);
 }

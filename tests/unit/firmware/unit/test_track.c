@@ -530,16 +530,30 @@ TEST(of_many_targets_the_nearest_is_tracked)
     }
 }
 
-/* The nearest is too weak to be seen: the other one is tracked, whichever comes first. */
-TEST(a_target_that_cannot_be_seen_does_not_stand_before_one_that_can)
+/* The nearest crosses, so that the clutter hides it: the other one is tracked, whichever comes
+ * first. */
+TEST(a_mover_that_cannot_be_seen_does_not_stand_before_one_that_can)
 {
-    for (uint32_t weak = 0; weak < 2; weak++) {
-        crowd[weak] = point_at(46.01, 11.03, 120, -80);
-        crowd[1 - weak] = point_at(46.01 + 50 / 111150.0, 11.03, 120, 30);
-        crowd[weak].flags = crowd[1 - weak].flags = 0;
-        struct rig *r = rig_in_crowd(2);
-        is_near(hs_degrees(track_of(r)->seen.position.latitude), 46.01, 50 / 111150.0 + 1e-6);
-        assert_true(track_of(r)->has_target);
+    for (uint32_t hidden = 0; hidden < 2; hidden++) {
+        struct rig *r = rig_at(46, 11);
+        for (uint32_t i = 0; i < 2; i++) {
+            crowd[i] = point_at(46 + (i == hidden ? 0 : 60 / 111150.0), 11, 3, 20);
+            crowd[i].flags = LM_TARGET_ABOVE_GROUND;
+            crowd[i].heading = hs_bam(i == hidden ? 90 : 180);
+            crowd[i].speed_mm_s = 12000;
+            crowd[i].leg_m = 50000;
+            seal_target(&crowd[i]);
+        }
+        r->unit.map.target_set.items = crowd;
+        r->unit.map.target_set.count = 2;
+        const struct lm_mover_state at =
+            lm_mover_state_at(&crowd[hidden], r->unit.exercise.time_us);
+        command(r, (struct lm_control){.kind = LM_CONTROL_SECTOR, .sector = {LM_SECTOR_GMT, 0}});
+        command(r, (struct lm_control){.kind = LM_CONTROL_CURSOR, .cursor = at.position});
+        command(r, track_it);
+        run(r, 0.3);
+        assert_int_equal(track_of(r)->state, LM_TRACK_HELD);
+        assert_int_equal(track_of(r)->index, 1 - hidden);
         free_rig(r);
     }
 }
