@@ -569,14 +569,14 @@ TEST(what_moves_is_not_tracked_as_what_stands)
     free_rig(r);
 }
 
-/* A sphere of 2 m radius has pi r^2: 11 dBsm, from any side and with a point's law. */
+/* A sphere of 20 m radius has pi r^2: 31 dBsm, from any side and with a point's law. */
 TEST(a_target_of_bodies_is_as_strong_as_they_are)
 {
     double over_noise_db[2];
     for (int is_body = 0; is_body < 2; is_body++) {
-        crowd[0] = point_at(46.01, 11.03, 120, 10 * log10(M_PI * 4));
+        crowd[0] = point_at(46.01, 11.03, 120, is_body ? -40 : 10 * log10(M_PI * 400));
         if (is_body) {
-            add_scatterer(&crowd[0], LM_SHAPE_SPHERE, 2000, 0, 0, 0, 0, 0);
+            add_scatterer(&crowd[0], LM_SHAPE_SPHERE, 20000, 0, 0, 0, 0, 0);
         }
         struct rig *r = rig_in_crowd(1);
         assert_true(track_of(r)->has_target);
