@@ -447,6 +447,7 @@ TEST(no_image_comes_to_a_display_without_a_map)
 {
     struct world *w = make_world();
     w->rig->board.lent.images[0] = w->parts[0];
+    w->rig->board.lent.images[1].offset = w->parts[1].offset;
     w->bytes[100] ^= 1;
     assert_int_equal(lm_unit_init(&w->rig->unit, &w->rig->board.lent), LM_OK);
     run(w->rig, 0.1);
