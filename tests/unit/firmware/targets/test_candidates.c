@@ -163,7 +163,7 @@ TEST(a_live_target_has_the_signature_that_it_names)
     static const struct lm_signature signatures[3] = {
         {.aspects = 4, .depressions = 1}, {.aspects = 0}, {.aspects = 8, .depressions = 1}};
     const struct lm_target_set set = {
-        .live = &live, .signatures = signatures, .signature_count = 3};
+        .live = &live, .signatures = signatures, .signature_count = 3, .live_signatures = 3};
     const struct lm_target_query query = {.position = antenna, .time_us = 7 * S};
     for (uint8_t told = 0; told < 6; told++) {
         struct lm_target_candidate c;

@@ -302,7 +302,7 @@ TEST_WITH(a_weak_chip_keeps_its_power_and_one_without_any_shows_nothing, set_up,
         c.level[20][30] = lit ? code_of(-20) : 0;
         seal_chip(&c);
         seal_chip_at(f, 16, &c);
-        lm_chips_init(&f->chips, &f->db, &f->signature);
+        lm_chips_init(&f->chips, &f->chip_source, &f->signature);
         choose(f, &t, 1, 1000, &candidates);
         assert_true(serve_chips(f));
         const struct lm_chip_slot *slot = lm_chip_of(&candidates.candidate[0]);
@@ -327,6 +327,7 @@ TEST_WITH(chips_of_another_signature_depression_or_reduction_are_others, set_up,
 {
     struct signature_world *f = *state;
     const struct lm_signature both[2] = {f->signature, f->signature};
+    const struct lm_chip_source sources[2] = {f->chip_source, f->chip_source};
     struct lm_target t[2] = {target_with_signature(46, 11, 30), target_with_signature(46, 11, 30)};
     t[1].signature = 1;
     const struct lm_target_set set = {
@@ -334,7 +335,7 @@ TEST_WITH(chips_of_another_signature_depression_or_reduction_are_others, set_up,
     const struct lm_target_query scene = {.position = {hs_bam(46), hs_bam(11)}, .reach_m = 1000};
     struct lm_geo_origin origin;
     lm_geo_set_origin(&origin, scene.position);
-    lm_chips_init(&f->chips, &f->db, both);
+    lm_chips_init(&f->chips, sources, both);
     struct lm_chip_query query = {.centre = scene.position,
                                   .reach_m = scene.reach_m,
                                   .radar = lm_geo_direct(&origin, FX_BAM_DEG(270), 20000 * 256),
