@@ -416,14 +416,16 @@ TEST(an_image_does_not_come_while_a_read_of_before_has_not_ended)
     end(w);
 }
 
-/* The first image is damaged, so the second brought tables and targets: it stays. */
-TEST(the_image_that_brought_the_tables_neither_comes_anew_nor_goes)
+/* The first image is damaged, so the second brought tables and targets: it stays while it is alone.
+ */
+TEST(the_only_image_neither_comes_anew_nor_goes)
 {
     struct world *w = make_world();
     struct lm_unit *u = &w->rig->unit;
     for (uint32_t i = 0; i < 2; i++) {
         w->rig->board.lent.images[i] = w->parts[i];
     }
+    w->rig->board.lent.images[2].offset = w->parts[2].offset;
     w->bytes[100] ^= 1;
     assert_int_equal(lm_unit_init(u, &w->rig->board.lent), LM_OK);
     run(w->rig, 0.5);
@@ -437,9 +439,16 @@ TEST(the_image_that_brought_the_tables_neither_comes_anew_nor_goes)
         assert_int_equal(u->map.image_count, 1);
     }
     const struct lm_flash_part *other = &w->parts[2];
-    assert_int_equal(lm_unit_map_mount(&u->map, 0, other, 1000), LM_ERR_RANGE);
     assert_int_equal(lm_unit_map_mount(&u->map, LM_IMAGES_MAX, other, 1000), LM_ERR_RANGE);
     assert_int_equal(u->map.image_count, 1);
+    comes(w, 2);
+    run(w->rig, 0.1);
+    assert_int_equal(u->map.image_count, 2);
+    goes(w, 1);
+    run(w->rig, 0.1);
+    assert_int_equal(u->count.commands_refused, 2);
+    assert_int_equal(u->map.image_count, 1);
+    assert_int_equal(u->map.db.base, other->offset);
     end(w);
 }
 
