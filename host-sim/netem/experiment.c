@@ -120,15 +120,22 @@ static bool is_same_plan(const struct nm_plan *a, const struct nm_plan *b)
            memcmp(a->epochs, b->epochs, sizeof a->epochs) == 0;
 }
 
+static bool is_same_surface(const struct nm_surface *a, const struct nm_surface *b)
+{
+    return a->permittivity == b->permittivity && a->loss == b->loss &&
+           a->rms_height_m == b->rms_height_m && a->correlation_m == b->correlation_m;
+}
+
 /* The chips were traced before: with the model's numbers of materials, and their surfaces. */
 static bool has_materials(const struct nm_training *t, const struct nm_materials *m)
 {
+    const bool is_told = t->model.architecture->material == NM_AS_SURFACE;
     bool is_same = t->materials.count == m->count;
     for (uint32_t i = 0; is_same && i < m->count; i++) {
-        is_same = strcmp(t->materials.names[i], m->names[i]) == 0;
+        is_same = strcmp(t->materials.names[i], m->names[i]) == 0 &&
+                  (!is_told || is_same_surface(&t->materials.surfaces[i], &m->surfaces[i]));
     }
-    return is_same && (t->model.architecture->material != NM_AS_SURFACE ||
-                       memcmp(t->materials.surfaces, m->surfaces, sizeof m->surfaces) == 0);
+    return is_same;
 }
 
 static int go_on(struct nm_experiment *e, const char *path)

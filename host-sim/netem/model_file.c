@@ -182,7 +182,7 @@ static int read_materials(struct db_text_file *f, struct nm_materials *m)
 static int read_surfaces(struct db_text_file *f, struct nm_materials *m)
 {
     for (uint32_t i = 0; i < m->count; i++) {
-        double x[4];
+        double x[4] = {0};
         if (read_numbers(f, "surface", x, 4) != 0) {
             return -1;
         }
@@ -344,6 +344,7 @@ static int read_head(struct db_text_file *f, const struct nm_architecture **arch
     if (version < 2) {
         return db_text_error(f, "train again", "a file without the names of its materials");
     }
+    *architecture = &nm_architectures[NM_BY_COEFFICIENT][0];
     if (read_architecture(f, version, architecture) != 0 || read_materials(f, materials) != 0 ||
         ((*architecture)->material == NM_AS_SURFACE && read_surfaces(f, materials) != 0)) {
         return -1;

@@ -154,8 +154,8 @@ void nm_network_backward(const struct nm_network *net, const double *weights, co
         slope(delta + here, activity + here, (size_t)rows * (size_t)to, unit_of(net, l));
         add_layer_gradient(delta + here, l > 0 ? activity + below : inputs, rows, from, to,
                            gradient);
-        double *to_below = l > 0 ? delta + below : d_inputs;
-        if (to_below) {
+        if (l > 0 || d_inputs) {
+            double *to_below = l > 0 ? delta + below : d_inputs;
             cblas_dgemm(CblasRowMajor, CblasNoTrans, CblasNoTrans, rows, from, to, 1, delta + here,
                         to, weights, from, 0, to_below, from);
         }

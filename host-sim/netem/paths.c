@@ -42,7 +42,7 @@ static int table_open(struct table *t, uint32_t most, enum nm_connection connect
         slots *= 2;
     }
     const bool is_chained = connection == NM_BY_INTENSITY;
-    *t = (struct table){malloc((size_t)most * sizeof *t->rows),
+    *t = (struct table){calloc(most, sizeof *t->rows),
                         is_chained ? malloc((size_t)most * sizeof *t->from) : NULL,
                         0,
                         (int)most,
