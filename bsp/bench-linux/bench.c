@@ -210,12 +210,6 @@ static int open_late(struct bench *b, uint32_t place, const char *path, struct l
     return part.bytes == 0 ? -1 : 0;
 }
 
-static bool is_last(const struct bench *b, uint32_t place)
-{
-    const struct lm_unit_map *const map = &b->unit->map;
-    return map->image_count == 1 && map->images[0].base == b->board.images[place].offset;
-}
-
 int bench_mount(struct bench *b, int32_t place, const char *path, struct lm_control *control)
 {
     const uint32_t at = (uint32_t)place - 1;
@@ -228,7 +222,7 @@ int bench_mount(struct bench *b, int32_t place, const char *path, struct lm_cont
         snprintf(b->error, sizeof b->error, "no image is at place %d", (int)place);
         return -1;
     }
-    if (is_last(b, at)) {
+    if (lm_unit_map_is_last(&b->unit->map, b->board.images[at].offset)) {
         snprintf(b->error, sizeof b->error, "the image at place %d is the only one; it stays",
                  (int)place);
         return -1;

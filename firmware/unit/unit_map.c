@@ -238,6 +238,11 @@ int lm_unit_map_open(struct lm_unit_map *m, const struct lm_unit_map_lent *lent)
     return open_tiles(m, lent);
 }
 
+bool lm_unit_map_is_last(const struct lm_unit_map *m, uint64_t offset)
+{
+    return m->image_count == 1 && m->images[0].base == offset;
+}
+
 static void take_out(struct lm_unit_map *m, uint64_t offset)
 {
     uint32_t i = lm_unit_map_image_from(m, offset);
@@ -277,8 +282,8 @@ static void lead(struct lm_unit_map *m)
 int lm_unit_map_mount(struct lm_unit_map *m, uint32_t place, const struct lm_flash_part *part,
                       uint32_t poll_limit)
 {
-    const bool is_last = m->image_count == 1 && m->images[0].base == part->offset;
-    if (!m->is_usable || LM_IMAGES_MAX == 1 || place >= LM_IMAGES_MAX || is_last) {
+    if (!m->is_usable || LM_IMAGES_MAX == 1 || place >= LM_IMAGES_MAX ||
+        lm_unit_map_is_last(m, part->offset)) {
         return LM_ERR_RANGE;
     }
     const bool is_drained = drain(m, poll_limit);

@@ -90,6 +90,9 @@ int32_t lm_unit_map_geoid_m_q6(const struct lm_unit_map *m, struct lm_position p
 /* Number in `images` of the one that begins at an offset of the flash; image_count: none does. */
 uint32_t lm_unit_map_image_from(const struct lm_unit_map *m, uint64_t offset);
 
+/* Whether that one is the only one, which lm_unit_map_mount does not let go. */
+bool lm_unit_map_is_last(const struct lm_unit_map *m, uint64_t offset);
+
 /* An image has come to a place of the board's, 0..LM_IMAGES_MAX - 1, in a part of the flash where
  * none was; or the one that is there goes, for a part of no bytes. Waits for the flash: what is
  * being read ends first. Tiles of all images leave the cache; targets are read anew, and have other
