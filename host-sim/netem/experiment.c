@@ -94,9 +94,9 @@ static int read_training(struct nm_experiment *e, const char *path)
 /* Materials that a training does not know by name, it may know by what they are made of. */
 static int meet_materials(struct nm_experiment *e)
 {
-    return take_materials(e, true) == 0 ? nm_surfaces_meet(&e->training->materials, &e->materials,
-                                                           e->settings.setup.materials != NULL)
-                                        : -1;
+    const struct scene *s = &e->view.scene;
+    return nm_surfaces_introduce(&e->training->materials, &e->settings.setup, s->materials,
+                                 s->material_count);
 }
 
 int nm_experiment_take(struct nm_experiment *e, const char *path)

@@ -312,26 +312,25 @@ static int read_state(struct db_text_file *f, struct nm_training *t)
     return 0;
 }
 
-/* Files of version 2 are from before there was a choice. */
-static int read_architecture(struct db_text_file *f, int version,
-                             const struct nm_architecture **architecture)
+/* Files of version 2 are from before there was a choice. NULL with the error reported. */
+static const struct nm_architecture *read_architecture(struct db_text_file *f, int version)
 {
     char name[8];
     const char *text = "";
     int connection = NM_BY_COEFFICIENT;
     if (next_value(f, "architecture", &text) != 0) {
-        return -1;
+        return NULL;
     }
     snprintf(name, sizeof name, "%s", *text == ' ' ? text + 1 : text);
     const bool is_known = nm_architecture_find(name, NM_BY_COEFFICIENT);
     if (!is_known) {
-        return db_text_error(f, remedy, "there is no architecture `%s`", name);
+        db_text_error(f, remedy, "there is no architecture `%s`", name);
+        return NULL;
     }
     if (version > 2 && read_choice(f, "connection", nm_connection_names, &connection) != 0) {
-        return -1;
+        return NULL;
     }
-    *architecture = nm_architecture_find(name, (enum nm_connection)connection);
-    return 0;
+    return nm_architecture_find(name, (enum nm_connection)connection);
 }
 
 static int read_head(struct db_text_file *f, const struct nm_architecture **architecture,
@@ -344,8 +343,8 @@ static int read_head(struct db_text_file *f, const struct nm_architecture **arch
     if (version < 2) {
         return db_text_error(f, "train again", "a file without the names of its materials");
     }
-    *architecture = &nm_architectures[NM_BY_COEFFICIENT][0];
-    if (read_architecture(f, version, architecture) != 0 || read_materials(f, materials) != 0 ||
+    *architecture = read_architecture(f, version);
+    if (!*architecture || read_materials(f, materials) != 0 ||
         ((*architecture)->material == NM_AS_SURFACE && read_surfaces(f, materials) != 0)) {
         return -1;
     }

@@ -87,6 +87,15 @@ int nm_surfaces_meet(struct nm_materials *known, const struct nm_materials *mode
     return 0;
 }
 
+int nm_surfaces_introduce(struct nm_materials *known, const struct setup *setup,
+                          const char names[][TRACE_NAME_SIZE], uint32_t count)
+{
+    struct nm_materials model;
+    return nm_surfaces_of(setup, names, count, &model) == 0
+               ? nm_surfaces_meet(known, &model, setup->materials != NULL)
+               : -1;
+}
+
 int nm_surfaces_allow(const struct setup *setup, const struct nm_architecture *architecture)
 {
     return !setup->materials || architecture->material == NM_AS_SURFACE

@@ -48,15 +48,12 @@ static void take_lobe(struct net_maker *maker)
 /* Once: the records of all looks have the same materials. */
 static int meet(struct net_maker *maker, const struct trace_records *r)
 {
-    struct nm_materials model;
     if (maker->has_met || maker->training->model.architecture->material != NM_AS_SURFACE) {
         return 0;
     }
     maker->has_met = true;
-    return nm_surfaces_of(maker->setup, r->materials, r->material_count, &model) == 0
-               ? nm_surfaces_meet(&maker->training->materials, &model,
-                                  maker->setup->materials != NULL)
-               : -1;
+    return nm_surfaces_introduce(&maker->training->materials, maker->setup, r->materials,
+                                 r->material_count);
 }
 
 /* A calibrated chip's amplitude is the root of a cross section at the peak of a response

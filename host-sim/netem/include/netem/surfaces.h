@@ -16,6 +16,10 @@ int nm_surfaces_of(const struct setup *setup, const char names[][TRACE_NAME_SIZE
  * with the error reported. */
 int nm_surfaces_meet(struct nm_materials *known, const struct nm_materials *model, bool is_given);
 
+/* Both: `known` meets the model's materials of these names, as given where --materials is. */
+int nm_surfaces_introduce(struct nm_materials *known, const struct setup *setup,
+                          const char names[][TRACE_NAME_SIZE], uint32_t count);
+
 /* Whether --materials means anything to networks of the architecture. Returns 0, or -1 with the
  * error reported: they are told of names alone. */
 int nm_surfaces_allow(const struct setup *setup, const struct nm_architecture *architecture);
