@@ -119,15 +119,12 @@ static struct world make_world(void)
     struct tiny_image images[TOUR_PLACES];
     for (int i = 0; i < TOUR_PLACES; i++) {
         images[i] = map_of(&tour_places[i]);
-        w.parts[i] = (struct lm_flash_part){w.size, images[i].size};
-        w.size += (images[i].size + 63) / 64 * 64;
     }
-    w.bytes = calloc(1, w.size);
+    w.bytes = tiny_images_join(images, TOUR_PLACES, w.parts, &w.size);
     if (w.bytes == NULL) {
         die("no memory");
     }
     for (int i = 0; i < TOUR_PLACES; i++) {
-        memcpy(w.bytes + w.parts[i].offset, images[i].bytes, images[i].size);
         tiny_image_free(&images[i]);
     }
     make_radar(&w.radar);

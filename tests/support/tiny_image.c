@@ -748,6 +748,21 @@ int tiny_image_add_section(struct tiny_image *image, uint32_t type, const void *
     return 0;
 }
 
+uint8_t *tiny_images_join(const struct tiny_image *images, uint32_t count,
+                          struct lm_flash_part *parts, size_t *size)
+{
+    *size = 0;
+    for (uint32_t i = 0; i < count; i++) {
+        parts[i] = (struct lm_flash_part){*size, images[i].size};
+        *size += to_64(images[i].size);
+    }
+    uint8_t *bytes = calloc(1, *size);
+    for (uint32_t i = 0; bytes && i < count; i++) {
+        memcpy(bytes + parts[i].offset, images[i].bytes, images[i].size);
+    }
+    return bytes;
+}
+
 void tiny_image_seal(struct tiny_image *image)
 {
     for (uint32_t i = 0; i < image->record_count; i++) {

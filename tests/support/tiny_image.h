@@ -93,6 +93,11 @@ int tiny_image_build(struct tiny_image *image, const struct tiny_spec *spec);
 int tiny_image_add_section(struct tiny_image *image, uint32_t type, const void *bytes,
                            size_t count);
 
+/* Lay images side by side, each from a multiple of 64 bytes on, as one flash has them, and tell
+ * where they lie. Returns *size bytes, which the caller frees; NULL without memory. */
+uint8_t *tiny_images_join(const struct tiny_image *images, uint32_t count,
+                          struct lm_flash_part *parts, size_t *size);
+
 /* Put right every checksum of the image (records, directory, sections, header) after a test has
  * changed its content. */
 void tiny_image_seal(struct tiny_image *image);

@@ -99,12 +99,10 @@ static struct fixture *open_fixture(void)
     struct fixture *f = calloc(1, sizeof *f);
     build(&f->theatre_image, THEATRE_SHIFT, 3, true);
     build(&f->world_image, WORLD_SHIFT, 4, false);
-    f->parts[0] = (struct lm_flash_part){0, f->theatre_image.size};
-    const size_t second = (f->theatre_image.size + 63) / 64 * 64;
-    f->parts[1] = (struct lm_flash_part){second, f->world_image.size};
-    f->bytes = calloc(1, second + f->world_image.size);
-    memcpy(f->bytes, f->theatre_image.bytes, f->theatre_image.size);
-    memcpy(f->bytes + second, f->world_image.bytes, f->world_image.size);
+    const struct tiny_image images[2] = {f->theatre_image, f->world_image};
+    size_t size;
+    f->bytes = tiny_images_join(images, 2, f->parts, &size);
+    assert_non_null(f->bytes);
     open_map(f, &f->theatre, 0, 1);
     open_map(f, &f->world, 1, 1);
     open_map(f, &f->both, 0, 2);

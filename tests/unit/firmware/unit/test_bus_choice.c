@@ -1,6 +1,8 @@
 /* Which table of the bus the unit hears, and what it does with a damaged one. */
 #include "check.h"
+#include "failing_reads.h"
 #include "fx/crc32c.h"
+#include "height_rows.h"
 #include "lm/bit.h"
 #include "lm/bus_filters.h"
 #include "lm/bus_record.h"
@@ -9,18 +11,7 @@
 
 #include <string.h>
 
-/* A bus that is none of those built in: true altitude at another identifier. */
-static const struct lm_bus_row rows[] = {{.name = "height",
-                                          .id = 700,
-                                          .field = LM_BUS_TRUE_ALTITUDE,
-                                          .stale_ms = 300,
-                                          .dead_ms = 2000,
-                                          .period_us = 100000,
-                                          .low = -1000,
-                                          .high = 30000,
-                                          .types = 1u << LM_CANAS_FLOAT,
-                                          .per_unit = 1}};
-static const struct lm_bus_profile ours = {.name = "ours", .rows = rows, .row_count = 1};
+static const struct lm_bus_profile ours = {.name = "ours", .rows = height_rows, .row_count = 1};
 
 /* A rig whose image carries that table, with one byte of it changed by `flip` and sealed again. */
 static struct rig *rig_with_table(uint32_t at, uint8_t flip, bool is_sealed)
@@ -120,7 +111,7 @@ TEST(each_of_three_further_tables_is_heard)
     const struct lm_can can = {.ctx = &frame, .receive = give_once};
     r->board.lent.can = &can;
     for (uint32_t t = 0; t < LM_BUS_TABLES_MORE; t++) {
-        row[t] = rows[0];
+        row[t] = height_rows[0];
         row[t].id += t;
         row[t].priority = 200; /* counts as 63 */
         table[t] = (struct lm_bus_profile){.name = "more", .rows = &row[t], .row_count = 1};
@@ -221,20 +212,15 @@ TEST(a_table_longer_than_the_pool_is_refused)
     free_rig(r);
 }
 
+static void expect_table_with_map(const struct rig *r)
+{
+    assert_int_equal(r->unit.map.bus != NULL, r->unit.map.is_usable);
+}
+
 TEST(a_table_that_the_flash_does_not_give_is_not_heard)
 {
     struct rig *r = rig_with_table(0, 0, true);
-    uint32_t refused = 0;
-    for (uint32_t read = 1; read < 12; read++) {
-        r->board.flash.reads = 0;
-        r->board.flash.fail_read = read;
-        start(r);
-        assert_true(r->unit.map.is_usable || r->unit.map.open_status == LM_ERR_IO);
-        assert_int_equal(r->unit.map.bus != NULL, r->unit.map.is_usable);
-        refused += !r->unit.map.is_usable;
-    }
-    assert_in_range(refused, 4, 10); /* header, classes, bands and table; tiles are read again */
-    r->board.flash.fail_read = 0;
+    start_with_failing_reads(r, expect_table_with_map);
     for (uint32_t every = 1; every < 8; every++) {
         r->board.flash.fail_every = every;
         start(r);

@@ -53,17 +53,16 @@ static struct with_signatures build(const struct tiny_image *country, uint32_t n
 static struct world *start(void)
 {
     struct world *w = calloc(1, sizeof *w);
-    struct with_signatures images[IMAGES];
-    size_t size = 0;
+    struct tiny_image images[IMAGES];
+    size_t size;
     w->rig = make_rig();
     for (uint32_t i = 0; i < IMAGES; i++) {
-        images[i] = build(&w->rig->image, i);
-        w->parts[i] = (struct lm_flash_part){size, images[i].size};
-        size += (images[i].size + 63) / 64 * 64;
+        const struct with_signatures with = build(&w->rig->image, i);
+        images[i] = (struct tiny_image){.bytes = with.bytes, .size = with.size};
     }
-    w->bytes = calloc(1, size);
+    w->bytes = tiny_images_join(images, IMAGES, w->parts, &size);
+    assert_non_null(w->bytes);
     for (uint32_t i = 0; i < IMAGES; i++) {
-        memcpy(w->bytes + w->parts[i].offset, images[i].bytes, images[i].size);
         free(images[i].bytes);
         w->rig->board.lent.images[i] = w->parts[i];
     }

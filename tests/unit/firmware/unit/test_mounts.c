@@ -49,17 +49,11 @@ static struct world *make_world_of(struct rig *rig)
     w->rig = rig;
     struct tiny_image images[IMAGES] = {w->rig->image, build(-8, false), build(-25, false),
                                         build(-8, true)};
-    size_t size = 0;
-    for (int i = 0; i < IMAGES; i++) {
-        w->parts[i] = (struct lm_flash_part){size, images[i].size};
-        size += (images[i].size + 63) / 64 * 64;
-    }
-    w->bytes = calloc(1, size);
-    for (int i = 0; i < IMAGES; i++) {
-        memcpy(w->bytes + w->parts[i].offset, images[i].bytes, images[i].size);
-        if (i > 0) {
-            tiny_image_free(&images[i]);
-        }
+    size_t size;
+    w->bytes = tiny_images_join(images, IMAGES, w->parts, &size);
+    assert_non_null(w->bytes);
+    for (int i = 1; i < IMAGES; i++) {
+        tiny_image_free(&images[i]);
     }
     memory_flash_open(&w->rig->board.flash, w->bytes, size);
     struct lm_db db;

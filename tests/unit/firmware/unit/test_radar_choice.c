@@ -1,5 +1,6 @@
 /* Which radar table the unit uses, and which images it then refuses. */
 #include "check.h"
+#include "failing_reads.h"
 #include "glass_text.h"
 #include "lm/bit.h"
 #include "lm/image.h"
@@ -161,22 +162,17 @@ TEST(an_image_whose_table_is_damaged_is_refused_unless_the_board_has_one)
     }
 }
 
+static void expect_table_with_map(const struct rig *r)
+{
+    assert_int_equal(r->unit.map.radar_origin,
+                     r->unit.map.is_usable ? LM_RADAR_OF_IMAGE : LM_RADAR_BUILT_IN);
+}
+
 TEST(a_table_that_the_flash_does_not_give_is_no_table)
 {
     const struct lm_radar ku = other_radar("KU", LM_SENSOR_KU);
     struct rig *r = rig_of(LM_SENSOR_KU, &ku);
-    uint32_t refused = 0;
-    for (uint32_t read = 1; read < 12; read++) {
-        r->board.flash.reads = 0;
-        r->board.flash.fail_read = read;
-        start(r);
-        assert_true(r->unit.map.is_usable || r->unit.map.open_status == LM_ERR_IO);
-        assert_int_equal(r->unit.map.radar_origin,
-                         r->unit.map.is_usable ? LM_RADAR_OF_IMAGE : LM_RADAR_BUILT_IN);
-        refused += !r->unit.map.is_usable;
-    }
-    assert_in_range(refused, 4, 10); /* header, classes, bands and table; tiles are read again */
-    r->board.flash.fail_read = 0;
+    start_with_failing_reads(r, expect_table_with_map);
     for (uint32_t every = 1; every < 8; every++) {
         r->board.flash.fail_every = every;
         start(r);

@@ -2,6 +2,7 @@
 #include "bus_frames.h"
 #include "check.h"
 #include "glass_text.h"
+#include "height_rows.h"
 #include "lm/bit.h"
 #include "unit_rig.h"
 
@@ -89,17 +90,8 @@ TEST(a_stuck_sender_is_named)
 
 TEST(a_stuck_sender_of_a_further_table_is_named_too)
 {
-    static const struct lm_bus_row rows[] = {{.name = "height",
-                                              .id = 700,
-                                              .field = LM_BUS_TRUE_ALTITUDE,
-                                              .stale_ms = 300,
-                                              .dead_ms = 2000,
-                                              .period_us = 100000,
-                                              .low = -1000,
-                                              .high = 30000,
-                                              .types = 1u << LM_CANAS_FLOAT,
-                                              .per_unit = 1}};
-    static const struct lm_bus_profile profile = {.name = "more", .rows = rows, .row_count = 1};
+    static const struct lm_bus_profile profile = {
+        .name = "more", .rows = height_rows, .row_count = 1};
     struct rig *r = make_rig();
     r->board.lent.tables[1] = r->board.lent.tables[0] = (struct lm_board_table){&profile, 1};
     assert_int_equal(lm_unit_init(&r->unit, &r->board.lent), LM_OK);
