@@ -7,7 +7,7 @@ $(O)/drivers/display/display_dp.o: OPT_board := -O3
 # A row of each picture goes through it.
 $(O)/bsp/record/rows_crc.o: OPT_board += -O2
 # At -O3 these grow by copies of loops that save no instruction.
-$(addprefix $(O)/firmware/,radar/weather.o clutter/class_gain.o): OPT_core := -O2
+$(addprefix $(O)/firmware/,radar/weather.o clutter/class_gain.o clutter/crests.o clutter/layover.o): OPT_core := -O2
 # Nor do these of its loops.
 $(O)/firmware/display/scan_conv.o: OPT_core += -fno-unswitch-loops -fno-peel-loops -fno-ipa-cp-clone -fno-split-paths
 # Every tile goes through it.

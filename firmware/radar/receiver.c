@@ -206,13 +206,6 @@ void lm_receiver_pulse(const struct lm_receiver *r, uint32_t *power_q24)
     }
 }
 
-void lm_receiver_fade(const struct lm_receiver *r, uint32_t floor_q24,
-                      const uint32_t *restrict speckle_q24, uint32_t *restrict power_q24)
-{
-    const struct lm_k_fade fade = {speckle_q24, floor_q24, r->unlit};
-    lm_k_fade(&fade, power_q24, r->cells);
-}
-
 void lm_receiver_join(const struct lm_receiver *r, const uint32_t *restrict steady_q24,
                       uint32_t *restrict power_q24)
 {

@@ -8,6 +8,7 @@
 #include "lm/chips.h"
 #include "lm/dbs.h"
 #include "lm/environment.h"
+#include "lm/kernels_radar.h"
 #include "lm/units.h"
 
 _Static_assert(LM_RADAR_CELLS_MAX * 23 / 16 <= LM_CELLS_MAX, "the lines of a window");
@@ -302,6 +303,17 @@ static void set_sea(struct lm_sector *s, const struct lm_classes *classes)
     lm_sea_set_cells(&s->sea, &s->grid, s->ground_edge_m_q8 + s->grid.cell_m_q8 / 2);
 }
 
+static void set_floor(struct lm_sector *s)
+{
+    const struct lm_sector_floor_setting setting = {.leak_db_q8 = fov_of(s)->ground_leak_db_q8,
+                                                    .most_db_q8 =
+                                                        s->radar->sar.ground_leak_most_db_q8,
+                                                    .beam = s->radar->antenna.azimuth_beam,
+                                                    .line = s->width,
+                                                    .cell_m_q8 = s->slant.cell_m_q8};
+    lm_sector_floor_set(&s->floor, &setting);
+}
+
 void lm_sector_begin(struct lm_sector *s, struct lm_tile_cache *tiles,
                      const struct lm_platform *platform)
 {
@@ -329,9 +341,7 @@ void lm_sector_begin(struct lm_sector *s, struct lm_tile_cache *tiles,
         lm_beam_clear(&s->beam); /* its samples were traced from another position */
     }
     set_tilt(s);
-    lm_sector_floor_set(&s->floor, fov_of(s)->ground_leak_db_q8,
-                        s->radar->sar.ground_leak_most_db_q8, s->radar->antenna.azimuth_beam,
-                        s->width);
+    set_floor(s);
     lm_class_lut_set(&s->class_lut, &s->radar->illumination, &tiles->db->classes);
     set_class_gain(s, &tiles->db->classes);
     set_sea(s, &tiles->db->classes);
@@ -725,9 +735,8 @@ static void fade_line(struct lm_sector *s)
     lm_grain_curve_set(&curve, taps->looks_q8);
     lm_grain_powers(&curve, &s->grain, speckle_q24, s->slant.cells);
     const uint32_t unlit = s->receiver.unlit;
-    const uint32_t floor_q24 =
-        lm_sector_floor_run(&s->floor, s->line, s->power_q24 + unlit, s->slant.cells - unlit);
-    lm_receiver_fade(&s->receiver, floor_q24, speckle_q24, s->power_q24);
+    lm_sector_floor_run(&s->floor, s->line, s->power_q24 + unlit, s->slant.cells - unlit);
+    lm_k_fade(speckle_q24, s->power_q24, s->slant.cells);
     s->grain.row_q16 += (uint64_t)s->width * taps->ratio_q8 * 362 / s->radar->antenna.azimuth_beam;
 }
 

@@ -112,6 +112,30 @@ void ref_leak_line(struct ref_leak *leak, double most_db, unsigned lines_max, un
     leak->mean += ((cells > 0 ? sum / cells : 0) - leak->mean) / leak->lines;
 }
 
+size_t ref_leak_bins(double step_m)
+{
+    return (size_t)pow(2, fmax(5, ceil(log2(1500 / step_m))));
+}
+
+void ref_leak_sector(struct ref_leak stretches[REF_LEAK_STRETCHES], size_t length, double most_db,
+                     unsigned lines_max, unsigned line, const double *power, size_t count,
+                     double *mean)
+{
+    const size_t last = count < 2 * length ? 0 : count / length - 1;
+    for (size_t n = 0; n <= last; n++) {
+        const size_t first = n * length;
+        ref_leak_line(&stretches[n], most_db, lines_max, line, power + first,
+                      n < last ? length : count - first);
+    }
+    for (size_t i = 0; i < count; i++) {
+        const double at = (double)i / (double)length - 0.5;
+        const double held = fmin(fmax(at, 0), (double)last), low = floor(held);
+        const double nearer = stretches[(size_t)low].mean;
+        const double farther = stretches[(size_t)fmin(low + 1, (double)last)].mean;
+        mean[i] = nearer + (held - low) * (farther - nearer);
+    }
+}
+
 double ref_leak(struct ref_leak *leak, const struct ref_params *params, unsigned line,
                 const struct ref_bin *shown, size_t count)
 {

@@ -89,10 +89,11 @@ static size_t unlit_of(const struct ref_receiver *r)
 static void add_leak(const struct ref_receiver *r, uint32_t line, double *power)
 {
     const size_t unlit = unlit_of(r);
-    ref_leak_line(r->leak, r->leak_most_db, r->leak_lines, line, power + unlit,
-                  r->bins.count - unlit);
+    double mean[REF_CELLS_MAX];
+    ref_leak_sector(r->leak, ref_leak_bins(r->bins.step_m), r->leak_most_db, r->leak_lines, line,
+                    power + unlit, r->bins.count - unlit, mean);
     for (size_t i = unlit; i < r->bins.count; i++) {
-        power[i] += r->leak->mean * pow(10, r->leak_db / 10);
+        power[i] += mean[i - unlit] * pow(10, r->leak_db / 10);
     }
 }
 

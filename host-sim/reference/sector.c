@@ -169,8 +169,8 @@ static void draw(struct ref_picture *picture, struct samples *samples, const str
                                    .sweep = ground->epoch};
     line.receiver.bins = (struct ref_bins){ground->cell_m / 2, ground->cell_m, ground->cell_count};
     line.receiver.height_m = picture->view.antenna_m - picture->view.reference_m;
-    struct ref_leak leak = {0};
-    line.receiver.leak = &leak;
+    struct ref_leak leak[REF_LEAK_STRETCHES] = {{0}};
+    line.receiver.leak = leak;
     line.receiver.leak_db = params->leak_db;
     line.receiver.leak_most_db = params->leak_most_db;
     line.receiver.leak_lines =

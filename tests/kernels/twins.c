@@ -613,18 +613,27 @@ static void run_beam_sum(const struct input *in, struct output *out, bool is_pla
     out->room = in->cells;
 }
 
-static void draw_fade(struct input *in)
+/* A floor between two means below 2^27. */
+static void draw_slope(struct input *in)
 {
     draw_powers(in);
-    in->number[0] = (int32_t)any_size(in);
+    const uint32_t from = any_size(in) >> 5, to = any_size(in) >> 5;
+    in->number[0] = (int32_t)from;
+    in->number[1] = (int32_t)(to - from) / (int32_t)(in->cells / 32 + 1);
+}
+
+static void run_add_slope(const struct input *in, struct output *out, bool is_plain)
+{
+    memcpy(out->line[0], in->power_q24[0], sizeof out->line[0]);
+    TWIN(lm_k_add_slope)
+    (out->line[0], in->cells, (uint32_t)in->number[0], (uint32_t)in->number[1]);
+    out->end[0] = out->room = ROOM;
 }
 
 static void run_fade(const struct input *in, struct output *out, bool is_plain)
 {
-    const struct lm_k_fade fade = {in->power_q24[1], (uint32_t)in->number[0],
-                                   in->entry[0] % (in->cells + 1)};
     memcpy(out->line[0], in->power_q24[0], sizeof out->line[0]);
-    TWIN(lm_k_fade)(&fade, out->line[0], in->cells);
+    TWIN(lm_k_fade)(in->power_q24[1], out->line[0], in->cells);
 }
 
 static struct lm_k_receiver receiver_of(const struct input *in)
@@ -720,7 +729,8 @@ static const struct kernel kernels[] = {
     {"lm_k_side_lobes", draw_levels, run_side_lobes},
     {"lm_k_side_lobes_across", draw_levels, run_side_lobes_across},
     {"lm_k_beam_sum", draw_powers, run_beam_sum},
-    {"lm_k_fade", draw_fade, run_fade},
+    {"lm_k_add_slope", draw_slope, run_add_slope},
+    {"lm_k_fade", draw_powers, run_fade},
     {"lm_k_detect", draw_powers, run_detect},
     {"lm_k_detect_in_rain", draw_powers, run_detect_in_rain},
     {"lm_k_tone", draw_tone, run_tone},

@@ -23,7 +23,7 @@ STAGES := lm_sector_draw_line lm_sar_draw_line lm_sector_sample_ahead lm_sar_sam
     lm_track_step lm_beacon_sample lm_side_lobes_find lm_side_lobes_add lm_foreground_horizon \
     lm_target_patch_set lm_target_patch_add_scatterers lm_target_patch_mark_hidden lm_detail_patch_draw lm_sea_run \
     lm_azimuth_average_begin lm_azimuth_average_add lm_azimuth_average_mean lm_slant_run lm_geo_set_origin \
-    lm_geo_set_ray lm_geo_along lm_ground_path_fit lm_receiver_pulse lm_receiver_fade lm_receiver_join \
+    lm_geo_set_ray lm_geo_along lm_ground_path_fit lm_receiver_pulse lm_receiver_join \
     lm_sector_floor_run lm_weather_line lm_beam_set_taps lm_beam_steady_sum lm_class_gain_look lm_sea_look \
     lm_sar_load_detail lm_target_candidates_refresh lm_dbs_scallop_q16 lm_dbs_sharpening_q8 lm_beam_next_missing
 $(O)/stages.o: tests/zcu102/images/stages.sh tests/zcu102/images/stage.inc tests/zcu102/images/images.mk $(LIB_firmware)

@@ -70,16 +70,16 @@ enum { LM_K_TAPS = 8 };
 void lm_k_beam_sum(const uint32_t *const power_q24[LM_K_TAPS], const uint32_t *weight_q16,
                    uint32_t *sum_q24, uint32_t cells);
 
-/* What fades a line's power: its speckle, and the floor that cells from `first` on have before it.
- */
-struct lm_k_fade {
-    const uint32_t *speckle_q24; /* 1 in Q24 */
-    uint32_t floor_q24, first;
-};
+/* Add to the power of each cell a floor that begins at `from_q24` and rises by `step` a cell, which
+ * has LM_K_SLOPE_PLACES binary places more. A step of 2^32 - n falls by n. The floor is 0..2^27 - 1
+ * in each cell. What does not fit is the largest power. Writes no entry behind the last cell.
+ * Cost: 2 a cell. */
+enum { LM_K_SLOPE_PLACES = 5 };
+void lm_k_add_slope(uint32_t *power_q24, uint32_t cells, uint32_t from_q24, uint32_t step);
 
-/* Add the floor to the power of each cell and multiply both by the speckle, in place. What does not
- * fit is the largest power. Cost: 2 a cell. */
-void lm_k_fade(const struct lm_k_fade *fade, uint32_t *power_q24, uint32_t cells);
+/* Multiply the power of each cell by its speckle, 1 in Q24, in place. What does not fit is the
+ * largest power. Cost: 1 a cell. */
+void lm_k_fade(const uint32_t *speckle_q24, uint32_t *power_q24, uint32_t cells);
 
 /* 10 log10 2^24, in 1/256 dB. */
 enum { LM_K_UNIT_Q24_DB_Q8 = 24 * FX_DB_PER_OCTAVE_Q14 / 64 };

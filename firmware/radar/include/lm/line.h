@@ -22,7 +22,7 @@
  *     azimuth                      lm_beam_sum                  lm_defocus_run
  *     pulse                        lm_receiver_pulse            -
  *     floor                        lm_sector_floor_run          -
- *     speckle, scatterers          lm_receiver_fade, _join      -
+ *     speckle, scatterers          lm_k_fade, lm_receiver_join  -
  *     noise, rain, jammers         lm_receiver_run              -
  *     level to grey                lm_tone_run                  lm_tone_run
  *

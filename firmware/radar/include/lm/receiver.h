@@ -59,12 +59,6 @@ void lm_receiver_floor_at(struct lm_receiver_floor *f, const struct lm_radar *ra
  * pulse is longer than a bin. */
 void lm_receiver_pulse(const struct lm_receiver *r, uint32_t *power_q24);
 
-/* Add what the ground leaves in every bin behind the altitude hole (lm/sector_floor.h), and
- * multiply by the power of the bin's speckle, 1 in Q24. Both have room for whole groups of 16.
- * Cost: 2 instructions a bin. */
-void lm_receiver_fade(const struct lm_receiver *r, uint32_t floor_q24, const uint32_t *speckle_q24,
-                      uint32_t *power_q24);
-
 /* Add the power of scatterers, which have no speckle of the ground. Cost: 1 instruction a bin. */
 void lm_receiver_join(const struct lm_receiver *r, const uint32_t *steady_q24, uint32_t *power_q24);
 

@@ -289,10 +289,18 @@ struct ref_leak {
 void ref_leak_line(struct ref_leak *leak, double most_db, unsigned lines_max, unsigned line,
                    const double *power, size_t count);
 
-/* Take the line of a patch. Returns the power that the ground leaves in the dark. */
+/* Bins of a stretch of a sector's ground, bins of `step_m`. */
+size_t ref_leak_bins(double step_m);
 
-/* Power that the ground leaves in each cell of a line, from the `ground` and `veil` of its bins.
- * The line is taken into the mean first. */
+/* The same for each stretch of `length` bins of a sector's line, the last of which has the rest,
+ * and the power `mean` of the ground about each bin: linear between the stretches' middles. */
+enum { REF_LEAK_STRETCHES = 32 };
+void ref_leak_sector(struct ref_leak stretches[REF_LEAK_STRETCHES], size_t length, double most_db,
+                     unsigned lines_max, unsigned line, const double *power, size_t count,
+                     double *mean);
+
+/* Power that the ground leaves in each cell of a patch's line, from the `ground` and `veil` of its
+ * bins. The line is taken into the mean first. */
 double ref_leak(struct ref_leak *leak, const struct ref_params *params, unsigned line,
                 const struct ref_bin *shown, size_t count);
 
@@ -367,7 +375,7 @@ struct ref_receiver {
     double air_loss_db_km;        /* there and back */
     const double *noise_table_db; /* borrowed: ref_speckle_table of the noise's looks */
     const double *speckle;        /* borrowed: power of the ground's in each bin; NULL: none */
-    struct ref_leak *leak;        /* borrowed: the ground's mean so far; NULL: nothing leaks */
+    struct ref_leak *leak;        /* borrowed: REF_LEAK_STRETCHES of it; NULL: nothing leaks */
     double leak_db, leak_most_db; /* what is left of it, and what a bin counts for at most */
     unsigned leak_lines;          /* that the beam is wide */
     double unlit_m;               /* slant range from which on it leaks: ref_unlit_m */

@@ -8,23 +8,45 @@
 #include "sector_world.h"
 
 #include <math.h>
+#include <string.h>
 
 enum { BINS = 256, LINE = 1 << 20 };
 
-static const int32_t most_q8 = -10 * 256;
-
-static double run(struct lm_sector_floor *f, uint32_t number, const uint32_t *power_q24,
-                  uint32_t bins)
+/* Levels, dB, that the ground leaves in each bin. */
+static void run(struct lm_sector_floor *f, uint32_t number, const uint32_t *power_q24,
+                uint32_t bins, double *left_db)
 {
-    return 10 * log10(ldexp(lm_sector_floor_run(f, number, power_q24, bins), -24));
+    uint32_t filled_q24[LM_CELLS_ROOM];
+    memcpy(filled_q24, power_q24, sizeof filled_q24);
+    lm_sector_floor_run(f, number, filled_q24, bins);
+    for (uint32_t i = 0; i < LM_CELLS_ROOM; i++) {
+        const double left = ldexp(filled_q24[i] - power_q24[i], -24);
+        assert_true(i < bins || left == 0);
+        left_db[i] = 10 * log10(left);
+    }
 }
 
+static void set(struct lm_sector_floor *f, double leak_db, double most_db, uint32_t lines,
+                double cell_m)
+{
+    lm_sector_floor_set(f, &(struct lm_sector_floor_setting){(int32_t)(leak_db * 256),
+                                                             (int32_t)(most_db * 256), lines * LINE,
+                                                             LINE, (uint32_t)(cell_m * 256)});
+}
+
+/* Of bins of 72 m, as those of a sector over 10 nautical miles. */
 static struct lm_sector_floor floor_of(double leak_db, uint32_t lines)
 {
-    struct lm_sector_floor f;
-    lm_sector_floor_clear(&f);
-    lm_sector_floor_set(&f, (int32_t)(leak_db * 256), most_q8, lines * LINE, LINE);
+    struct lm_sector_floor f = {.bins_log2 = 0};
+    set(&f, leak_db, -10, lines, 72);
     return f;
+}
+
+static void fill_q24(uint32_t power_q24[LM_CELLS_ROOM], double level_db)
+{
+    for (int i = 0; i < LM_CELLS_ROOM; i++) {
+        power_q24[i] = (uint32_t)ldexp(pow(10, level_db / 10), 24);
+    }
 }
 
 TEST(even_ground_leaves_its_level_less_the_leak)
@@ -32,12 +54,13 @@ TEST(even_ground_leaves_its_level_less_the_leak)
     for (int db = -30; db <= 20; db += 5) {
         struct lm_sector_floor f = floor_of(-16, 200);
         uint32_t power_q24[LM_CELLS_ROOM];
-        for (int i = 0; i < LM_CELLS_ROOM; i++) {
-            power_q24[i] = (uint32_t)ldexp(pow(10, db / 10.0), 24);
-        }
+        fill_q24(power_q24, db);
         for (uint32_t line = 0; line < 50; line++) {
-            const double wanted_db = fmin(db, -10) - 16;
-            assert_true(fabs(run(&f, line, power_q24, BINS) - wanted_db) < 0.02);
+            double left_db[LM_CELLS_ROOM];
+            run(&f, line, power_q24, BINS, left_db);
+            for (uint32_t i = 0; i < BINS; i++) {
+                assert_true(fabs(left_db[i] - (fmin(db, -10) - 16)) < 0.02);
+            }
         }
     }
 }
@@ -45,42 +68,91 @@ TEST(even_ground_leaves_its_level_less_the_leak)
 TEST(leaks_of_the_ends_of_the_table_neither_overflow_nor_add_power)
 {
     uint32_t power_q24[LM_CELLS_ROOM];
-    for (int i = 0; i < LM_CELLS_ROOM; i++) {
-        power_q24[i] = UINT32_MAX;
-    }
-    struct lm_sector_floor f;
-    lm_sector_floor_clear(&f);
-    lm_sector_floor_set(&f, 0, 20 * 256, LINE, LINE);
+    double left_db[LM_CELLS_ROOM];
+    fill_q24(power_q24, 20);
+    struct lm_sector_floor f = {.bins_log2 = 0};
+    set(&f, 0, 20, 1, 72);
     for (uint32_t line = 0; line < 10; line++) {
-        assert_true(fabs(run(&f, line, power_q24, LM_CELLS_MAX) - 20) < 0.01);
+        run(&f, line, power_q24, LM_CELLS_MAX, left_db);
+        for (uint32_t i = 0; i < LM_CELLS_MAX; i++) {
+            assert_true(fabs(left_db[i] - 6.02) < 0.01);
+        }
     }
-    lm_sector_floor_set(&f, -100 * 256, 20 * 256, LINE, LINE);
-    assert_int_equal(lm_sector_floor_run(&f, 0, power_q24, LM_CELLS_MAX), 0);
-    lm_sector_floor_set(&f, 0, 20 * 256, 0, UINT32_MAX);
+    memset(power_q24, 0xff, sizeof power_q24); /* there is no more */
+    lm_sector_floor_run(&f, 0, power_q24, LM_CELLS_MAX);
+    assert_int_equal(power_q24[0], UINT32_MAX);
+    assert_int_equal(power_q24[LM_CELLS_MAX - 1], UINT32_MAX);
+    fill_q24(power_q24, 20);
+    set(&f, -100, 20, 1, 72);
+    run(&f, 0, power_q24, LM_CELLS_MAX, left_db);
+    assert_true(left_db[0] < -200 && left_db[LM_CELLS_MAX - 1] < -200);
+    set(&f, 0, 20, 0, 72);
     assert_int_equal(f.lines_max, 1);
 }
 
-TEST(the_mean_of_any_lines_is_that_of_the_reference)
+TEST(the_means_of_any_lines_are_those_of_the_reference)
 {
     struct hs_rng rng;
     hs_rng_seed(&rng, 12);
     for (uint32_t bins = 0; bins <= LM_CELLS_MAX; bins += 37) {
         const uint32_t lines = 1 + hs_rng_below(&rng, 250);
+        const double cell_m = 4 + hs_rng_below(&rng, 70);
         struct lm_sector_floor f = floor_of(-20, lines);
-        struct ref_leak leak = {0};
+        set(&f, -20, -10, lines, cell_m);
+        struct ref_leak leak[REF_LEAK_STRETCHES] = {{0}};
         for (uint32_t line = 3; line < 300; line++) {
             uint32_t power_q24[LM_CELLS_ROOM];
-            double power[LM_CELLS_ROOM];
-            const double about_db = -(double)hs_rng_below(&rng, 30);
+            double power[LM_CELLS_ROOM], mean[LM_CELLS_ROOM], left_db[LM_CELLS_ROOM];
+            double about_db = 0;
             for (uint32_t i = 0; i < LM_CELLS_ROOM; i++) {
+                about_db = i % 50 ? about_db : -(double)hs_rng_below(&rng, 30);
                 power_q24[i] =
                     (uint32_t)ldexp(pow(10, (about_db + hs_rng_below(&rng, 20)) / 10), 24);
                 power[i] = ldexp(power_q24[i], -24);
             }
-            ref_leak_line(&leak, -10, lines, line, power, bins);
-            const double wanted_db = fmax(10 * log10(leak.mean) - 20, -70);
-            assert_true(fabs(fmax(run(&f, line, power_q24, bins), -70) - wanted_db) < 0.05);
+            ref_leak_sector(leak, ref_leak_bins(cell_m), -10, lines, line, power, bins, mean);
+            run(&f, line, power_q24, bins, left_db);
+            for (uint32_t i = 0; i < bins; i++) {
+                const double wanted_db = fmax(10 * log10(mean[i]) - 20, -60);
+                assert_true(fabs(fmax(left_db[i], -60) - wanted_db) < 0.1);
+            }
         }
+    }
+}
+
+TEST(stretches_of_another_length_begin_anew)
+{
+    uint32_t power_q24[LM_CELLS_ROOM];
+    double left_db[LM_CELLS_ROOM];
+    struct lm_sector_floor f = floor_of(-16, 20);
+    fill_q24(power_q24, -12);
+    run(&f, 0, power_q24, BINS, left_db);
+    set(&f, -16, -10, 20, 36);
+    assert_int_equal(f.bins_log2, 6);
+    fill_q24(power_q24, -42);
+    run(&f, 1, power_q24, BINS, left_db);
+    assert_true(fabs(left_db[0] - -58) < 0.3);
+    set(&f, -16, -10, 20, 0.01); /* the line is one stretch */
+    run(&f, 2, power_q24, LM_CELLS_MAX, left_db);
+    assert_true(fabs(left_db[LM_CELLS_MAX - 1] - -58) < 0.3);
+}
+
+/* Land of -12 dB up to bin 96, and water of -45 dB behind it. */
+TEST(land_leaks_into_water_near_it_and_not_into_water_far_from_it)
+{
+    struct lm_sector_floor f = floor_of(-16, 20);
+    uint32_t power_q24[LM_CELLS_ROOM], water_q24[LM_CELLS_ROOM];
+    double left_db[LM_CELLS_ROOM];
+    fill_q24(power_q24, -12);
+    fill_q24(water_q24, -45);
+    memcpy(power_q24 + 96, water_q24 + 96, sizeof power_q24 - 96 * sizeof *power_q24);
+    for (uint32_t line = 0; line < 40; line++) {
+        run(&f, line, power_q24, BINS, left_db);
+    }
+    assert_true(fabs(left_db[10] - -28) < 0.1 && fabs(left_db[80] - -28) < 0.1);
+    assert_true(fabs(left_db[96] - (10 * log10(0.5) - 28)) < 0.1);
+    for (uint32_t i = 96 + 16; i < BINS; i++) {
+        assert_true(fabs(left_db[i] - -61) < 0.5);
     }
 }
 

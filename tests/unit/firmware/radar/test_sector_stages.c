@@ -29,8 +29,8 @@ struct trial {
     struct sector_world *w;
     struct ref_params params;
     double noise_db[REF_SPECKLE_SLICES];
-    double grain_row;     /* of the line, from where the sweep's grain begins */
-    struct ref_leak leak; /* of the lines so far */
+    double grain_row;                         /* of the line, from where the sweep's grain begins */
+    struct ref_leak leak[REF_LEAK_STRETCHES]; /* of the lines so far */
     struct ref_environment environment;
     const struct lm_environment *weather; /* NULL: fair */
     struct score score[STAGES];
@@ -262,7 +262,7 @@ static void judge_receiver(struct trial *t, uint32_t line, uint32_t sweep,
     receiver.unlit_m =
         ref_unlit_m(&antenna, hs_degrees((fx_bam_t)t->w->sector.tilt), height_m(&t->w->sector));
     struct ref_weather_line weather;
-    receiver.leak = &t->leak;
+    receiver.leak = t->leak;
     receiver.leak_lines =
         ref_leak_lines(hs_degrees(s->radar->antenna.azimuth_beam), hs_degrees(s->width));
     double power[REF_CELLS_MAX], level_db[REF_CELLS_MAX], speckle[REF_CELLS_MAX], looks;
