@@ -440,7 +440,9 @@ static uint32_t check(struct findings *f, const struct world *w, struct seat *ol
     const struct tour_point p = tour_at(old->world_us);
     const struct tour_place *place = &tour_places[p.circling];
     const double bam = 4294967296.0 / 360;
-    const struct lm_position middle = {(fx_bam_t)llround((place->latitude_deg - 0.03) * bam),
+    /* Nearer to the equator, so that beside the pole it lies where patches are made. */
+    const double nearer_deg = copysign(0.03, place->latitude_deg);
+    const struct lm_position middle = {(fx_bam_t)llround((place->latitude_deg - nearer_deg) * bam),
                                        (fx_bam_t)llround(place->longitude_deg * bam)};
     const struct lm_control cursor = {.kind = LM_CONTROL_CURSOR, .cursor = middle};
     uint32_t lit = 0;
