@@ -34,7 +34,7 @@ static uint32_t to_go_s(const struct lm_unit *u, struct lm_position position)
     lm_geo_inverse(lm_ownship_position(&u->ownship), position, &distance_m_q8, &bearing);
     const uint64_t distance_mm = lm_mm_of_m_q8(distance_m_q8);
     const uint32_t speed_mm_s = (uint32_t)u->ownship.ground_speed_mm_s;
-    if (u->ownship.velocity_quality == LM_NAV_DEAD || speed_mm_s == 0) {
+    if (speed_mm_s == 0) {
         return LM_TO_GO_NONE;
     }
     const uint64_t seconds = (distance_mm + speed_mm_s / 2) / speed_mm_s;

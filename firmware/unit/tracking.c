@@ -120,7 +120,6 @@ void lm_tracking_hold_cursor(struct lm_unit *u)
 static struct lm_track_scene scene_of(struct lm_unit *u)
 {
     const struct lm_ownship *own = &u->ownship;
-    const bool is_moving = own->velocity_quality != LM_NAV_DEAD;
     return (struct lm_track_scene){
         .radar = u->map.radar,
         .tiles = &u->map.tiles,
@@ -131,7 +130,7 @@ static struct lm_track_scene scene_of(struct lm_unit *u)
                      .height_m_q10 = lm_m_q10_of_m_q6(lm_antenna_height_m_q6(own, &u->map)),
                      .heading = own->heading,
                      .track = own->track,
-                     .speed_mm_s = is_moving ? (uint32_t)own->ground_speed_mm_s : 0,
+                     .speed_mm_s = (uint32_t)own->ground_speed_mm_s,
                      .time_us = u->exercise.time_us},
         .pitch = own->pitch,
         .mode = u->page.mode,

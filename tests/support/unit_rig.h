@@ -20,6 +20,7 @@ struct fake_bus {
     double height_m;                        /* 2,000 at first */
     double pitch_deg;                       /* of the nose, 2 at first */
     double speed_m_s, nose_deg, turn_deg_s; /* north, whatever nose and turn say */
+    bool has_no_velocity;                   /* neither speed nor track are sent */
     bool has_steerpoint;                    /* a steerpoint is sent, too */
     double steerpoint_deg[2];
     uint8_t code;

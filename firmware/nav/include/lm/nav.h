@@ -92,7 +92,7 @@ struct lm_ownship {
     enum lm_nav_quality attitude_quality;
     struct lm_nav_origin attitude_origin;
 
-    int32_t velocity_north_mm_s, velocity_east_mm_s; /* over the ground */
+    int32_t velocity_north_mm_s, velocity_east_mm_s; /* over the ground; both 0 when dead */
     int32_t ground_speed_mm_s;
     fx_bam_t track; /* direction of the ground velocity, from north; 0 at rest */
     enum lm_nav_quality velocity_quality;

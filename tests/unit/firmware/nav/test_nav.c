@@ -208,6 +208,21 @@ TEST(ground_speed_and_track_serve_when_there_is_no_velocity)
     assert_int_equal(at(&ear, 3000001).velocity_north_mm_s, 100000);
 }
 
+/* Whichever half is missing: a speed without a track leads nowhere. */
+TEST(a_velocity_that_is_dead_is_none)
+{
+    for (int half = 0; half < 2; half++) {
+        struct ear ear;
+        open_ear(&ear);
+        hear_float(&ear, half ? LM_BUS_TRUE_TRACK : LM_BUS_GROUND_SPEED, 100, 0);
+        const struct lm_ownship own = at(&ear, 1000);
+        assert_int_equal(own.velocity_quality, LM_NAV_DEAD);
+        assert_int_equal(own.ground_speed_mm_s, 0);
+        assert_int_equal(own.velocity_north_mm_s, 0);
+        assert_int_equal(own.velocity_east_mm_s, 0);
+    }
+}
+
 TEST(the_best_height_that_lives_is_used_and_moved_on)
 {
     struct ear ear;

@@ -364,6 +364,30 @@ TEST(over_a_patch_a_place_is_tracked_marked_and_the_picture_stays)
     free_rig(r);
 }
 
+/* A patch that is drawn needs no navigation; what is tracked over it does. */
+TEST(over_a_patch_too_a_track_is_lost_without_navigation)
+{
+    for (int kind = 0; kind < 2; kind++) {
+        struct rig *r = rig_at(46.01, 11.03);
+        command(r, patch_here);
+        run(r, 2);
+        cursor_to(r, 46.01, 11.03);
+        command(r, track_it);
+        run(r, 0.5);
+        assert_int_equal(r->unit.page.picture, LM_PICTURE_PATCH);
+        assert_int_equal(track_of(r)->state, LM_TRACK_HELD);
+        r->bus.has_no_velocity = kind == 0;
+        r->bus.is_down = kind == 1;
+        run(r, 4);
+        assert_int_equal(track_of(r)->loss, LM_TRACK_NO_NAV);
+        if (kind == 0) { /* the speed heard last says nothing of now */
+            assert_int_equal(track_of(r)->state, LM_TRACK_COASTING);
+            assert_int_equal(track_of(r)->seen.range_rate_mm_s, 0);
+        }
+        free_rig(r);
+    }
+}
+
 TEST(what_is_tracked_far_from_a_patch_is_told_and_not_marked)
 {
     struct rig *r = fly_rig();
@@ -448,6 +472,17 @@ TEST(an_automatic_scale_follows_what_is_tracked)
     assert_int_equal(scale_nm(r), 10);
     assert_true(r->unit.cursor.is_home);
     assert_memory_equal(&r->unit.cursor.position, &cursor, sizeof cursor); /* and it stays */
+    free_rig(r);
+    r = rig_at(46.05, 11); /* 11 km away: less than 0.4 of 40 and of 20 miles */
+    command(r, (struct lm_control){.kind = LM_CONTROL_RANGE, .range_nm = 40});
+    run(r, 0.5);
+    command(r, track_it);
+    run(r, 0.5);
+    press(r, 2);
+    run(r, 0.5);
+    assert_int_equal(track_of(r)->state, LM_TRACK_HELD);
+    is_near(track_of(r)->seen.slant_m_q8 / 256.0, 11000, 800);
+    assert_int_equal(scale_nm(r), 10);
     free_rig(r);
     r = make_rig_at(45.9, 11); /* 17.6 km away: more than 0.9 of 10 miles, less of 20 */
     assert_int_equal(lm_unit_init(&r->unit, &r->board.lent), LM_OK);
