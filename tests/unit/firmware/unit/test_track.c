@@ -201,6 +201,22 @@ TEST(a_hill_between_breaks_the_lock_and_one_that_passes_does_not)
     free_rig(r);
 }
 
+/* 1,824 m and 2,130 m away, both behind the crest 1,400 m east, which stands 50 m above the ground
+ * below the aircraft. */
+TEST(nothing_hides_what_is_nearer_than_2_km)
+{
+    for (int is_far = 0; is_far < 2; is_far++) {
+        struct rig *r = rig_at(45.955, is_far ? 11.0275 : 11.0235);
+        r->bus.nose_deg = 90;
+        r->bus.height_m = 115;
+        run(r, 1);
+        command(r, track_it);
+        run(r, 0.5);
+        assert_int_equal(track_of(r)->loss, is_far ? LM_TRACK_SHADOW : LM_TRACK_SOUND);
+        free_rig(r);
+    }
+}
+
 TEST(a_radar_that_does_not_send_loses_its_lock)
 {
     struct rig *r = rig_at(46.01, 11.03);
