@@ -2,6 +2,7 @@
 
 #include "hs/report.h"
 #include <math.h>
+#include <pthread.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -21,8 +22,15 @@ uint8_t image_height_code(const uint16_t table_dm[16], double height_dm)
 {
     double least = fabs(table_dm[0] - height_dm);
     int best = 0;
+    bool is_rising = true; /* as it should be: then no height follows that is nearer again */
+    for (int i = 1; i < 16; i++) {
+        is_rising &= table_dm[i] >= table_dm[i - 1];
+    }
     for (int i = 1; i < 16 && least > 0; i++) { /* most ground has no height, which comes first */
         const double apart = fabs(table_dm[i] - height_dm);
+        if (is_rising && apart > least) {
+            break;
+        }
         best = apart < least ? i : best;
         least = apart < least ? apart : least;
     }
@@ -46,23 +54,58 @@ void image_heights_report(const uint16_t table_dm[16])
     hs_report_close();
 }
 
+enum { FALL = 12 }; /* codes that a quarter of a power lies below it: 6 dB */
+
+/* Powers of the reflectivity codes, and where each code begins, FALL zeros before them. */
+struct powers {
+    double of_code[256], least[FALL + 256];
+};
+
+static struct powers powers;
+static pthread_once_t powers_once = PTHREAD_ONCE_INIT;
+
+static void set_powers(void)
+{
+    for (int i = 0; i < 256; i++) {
+        const double db = image_gamma_db((uint8_t)i);
+        powers.of_code[i] = pow(10.0, db / 10.0);
+        powers.least[FALL + i] = i > 0 ? pow(10.0, (db - 0.25) / 10.0) : 0.0;
+    }
+}
+
+/* The code of a power that is that of code `high` at most and a quarter of it at least. Beside the
+ * beginning of a code the logarithm decides, which need not be exact. */
+static uint8_t code_of_power(double power, uint8_t high)
+{
+    static const double close = 1e-9;
+    const double *least = &powers.least[high + 1];
+    int below = 0;
+    for (int i = 0; i < FALL; i++) {
+        below += power < least[i];
+    }
+    const int code = high - below;
+    const bool is_sure = power > powers.least[FALL + code] * (1 + close) &&
+                         (code == 255 || power < powers.least[FALL + code + 1] * (1 - close));
+    return is_sure ? (uint8_t)code : image_gamma_code(10.0 * log10(power));
+}
+
 /* What the rule of coarser cells asks of the class table. */
 struct rule {
     const uint16_t *heights_dm;
     double least_built;           /* share of the power from which structures win the cell */
-    double power[256];            /* of the reflectivity codes */
+    const double *power;          /* of the reflectivity codes */
     uint8_t group[LM_DB_CLASSES]; /* of a class: the lowest number of those that differ in their
                                    * facing alone */
     bool stands[LM_DB_CLASSES];   /* it is a class of structures */
+    uint8_t same_height[16];      /* the lowest code of the same height */
 };
 
 static void set_rule(struct rule *rule, const struct lm_classes *classes, enum image_vote vote)
 {
     rule->heights_dm = classes->height_dm;
     rule->least_built = vote == IMAGE_VOTE_POWER ? IMAGE_BUILT_SHARE : 1;
-    for (int i = 0; i < 256; i++) {
-        rule->power[i] = pow(10.0, image_gamma_db((uint8_t)i) / 10.0);
-    }
+    pthread_once(&powers_once, set_powers);
+    rule->power = powers.of_code;
     for (int k = 0; k < LM_DB_CLASSES; k++) {
         const struct lm_class *c = &classes->entry[k];
         int first = c->facing == 0 ? k : 0;
@@ -72,6 +115,9 @@ static void set_rule(struct rule *rule, const struct lm_classes *classes, enum i
         }
         rule->group[k] = (uint8_t)first;
         rule->stands[k] = c->kind == LM_KIND_STRUCTURE && k != LM_DB_CLASS_NONE;
+    }
+    for (int i = 0; i < 16; i++) {
+        rule->same_height[i] = image_height_code(rule->heights_dm, rule->heights_dm[i]);
     }
 }
 
@@ -115,10 +161,102 @@ static uint16_t cell_of_sums(const struct sums *s, const struct rule *rule)
     return image_cell(gamma, (uint8_t)facing, height);
 }
 
+/* How many of four cells have a class that votes with class `k`, and the sum of their heights. */
+static int votes_of(const uint16_t cells[4], uint8_t group, const struct rule *rule, int *height_dm)
+{
+    int votes = 0;
+    *height_dm = 0;
+    for (int i = 0; i < 4; i++) {
+        const bool is_one = rule->group[image_cell_class(cells[i])] == group;
+        votes += is_one;
+        *height_dm += is_one ? rule->heights_dm[image_cell_height(cells[i])] : 0;
+    }
+    return votes;
+}
+
+/* Of the classes that vote together, the commonest among four cells, of equals the lowest. */
+static uint8_t facing_of(const uint16_t cells[4], uint8_t group, const struct rule *rule)
+{
+    int best = LM_DB_CLASS_NONE, most = 0;
+    for (int i = 0; i < 4; i++) {
+        const uint8_t k = image_cell_class(cells[i]);
+        int count = 0;
+        for (int other = 0; other < 4; other++) {
+            count += image_cell_class(cells[other]) == k;
+        }
+        const bool is_better = count > most || (count == most && k < best);
+        if (k != LM_DB_CLASS_NONE && rule->group[k] == group && is_better) {
+            best = k;
+            most = count;
+        }
+    }
+    return (uint8_t)best;
+}
+
+/* Of four cells that differ in their reflectivity alone, which is what most ground is. */
+static uint16_t cell_of_like(const uint16_t cells[4], const struct rule *rule)
+{
+    double power = 0;
+    uint8_t high = 0;
+    for (int i = 0; i < 4; i++) {
+        const uint8_t gamma = image_cell_gamma(cells[i]);
+        power += rule->power[gamma];
+        high = gamma > high ? gamma : high;
+    }
+    return image_cell(code_of_power(power / 4, high), image_cell_class(cells[0]),
+                      rule->same_height[image_cell_height(cells[0])]);
+}
+
+/* What add_cell and cell_of_sums make of four cells, of which most blocks are. */
+static uint16_t cell_of_four(const uint16_t cells[4], const struct rule *rule)
+{
+    double power = 0, structures = 0;
+    int count = 0, best = -1, most = 0, height_dm = 0;
+    uint8_t high = 0;
+    for (int i = 0; i < 4; i++) {
+        const uint8_t k = image_cell_class(cells[i]), gamma = image_cell_gamma(cells[i]);
+        const bool has_data = k != LM_DB_CLASS_NONE;
+        const double own = has_data ? rule->power[gamma] : 0.0;
+        count += has_data;
+        high = has_data && gamma > high ? gamma : high;
+        power += own;
+        structures += rule->stands[k] ? own : 0.0;
+    }
+    if (count == 0) {
+        return IMAGE_CELL_NONE;
+    }
+    const bool is_built = structures > power * rule->least_built;
+    for (int i = 0; i < 4; i++) {
+        const uint8_t group = rule->group[image_cell_class(cells[i])];
+        int sum_dm;
+        const int votes = votes_of(cells, group, rule, &sum_dm);
+        const bool may_win = group != LM_DB_CLASS_NONE && (!is_built || rule->stands[group]);
+        if (may_win && (votes > most || (votes == most && group < best))) {
+            best = group;
+            most = votes;
+            height_dm = sum_dm;
+        }
+    }
+    const uint8_t height = image_height_code(rule->heights_dm, (double)height_dm / most);
+    return image_cell(code_of_power(power / count, high), facing_of(cells, (uint8_t)best, rule),
+                      height);
+}
+
+/* `fine` is the south-western of four cells. */
+static uint16_t reduce_four(const uint16_t *fine, size_t stride, const struct rule *rule)
+{
+    const uint16_t cells[4] = {fine[0], fine[1], fine[stride], fine[stride + 1]};
+    const int differ = (cells[0] ^ cells[1]) | (cells[0] ^ cells[2]) | (cells[0] ^ cells[3]);
+    if (differ == 0) {
+        return cells[0];
+    }
+    const bool are_like = (differ & 255) == 0 && image_cell_class(cells[0]) != LM_DB_CLASS_NONE;
+    return are_like ? cell_of_like(cells, rule) : cell_of_four(cells, rule);
+}
+
 static uint16_t reduce_block(const uint16_t *fine, size_t stride, int factor,
                              const struct rule *rule)
 {
-    struct sums sums = {0};
     bool are_equal = true;
     for (int r = 0; r < factor; r++) {
         for (int c = 0; c < factor; c++) {
@@ -128,6 +266,7 @@ static uint16_t reduce_block(const uint16_t *fine, size_t stride, int factor,
     if (are_equal) {
         return fine[0];
     }
+    struct sums sums = {0};
     for (int r = 0; r < factor; r++) {
         for (int c = 0; c < factor; c++) {
             add_cell(&sums, fine[(size_t)r * stride + (size_t)c], rule);
@@ -145,7 +284,8 @@ void image_reduce(const struct image_reduction *how, const uint16_t *fine, size_
         for (int c = 0; c < how->side; c++) {
             const size_t from = (size_t)(how->factor * r) * fine_stride + (size_t)(how->factor * c);
             coarse[(size_t)r * coarse_stride + (size_t)c] =
-                reduce_block(fine + from, fine_stride, how->factor, &rule);
+                how->factor == 2 ? reduce_four(fine + from, fine_stride, &rule)
+                                 : reduce_block(fine + from, fine_stride, how->factor, &rule);
         }
     }
 }
@@ -235,12 +375,37 @@ static int32_t mean_of_nine(const int32_t (*const below[4])[LM_TILE_POSTS], int 
     return (int32_t)(sum >> 4);
 }
 
+/* The same around every second post of one tile, its edges apart, for a quarter of what is above.
+ */
+static void smooth_quarter(const int32_t below[LM_TILE_POSTS][LM_TILE_POSTS],
+                           int32_t posts_q6[LM_TILE_POSTS][LM_TILE_POSTS], int row0, int column0)
+{
+    for (int r = 1; r < LM_TILE_CELLS / 2; r++) {
+        int64_t sums[LM_TILE_POSTS];
+        for (int c = 0; c < LM_TILE_POSTS; c++) {
+            sums[c] =
+                (int64_t)below[2 * r - 1][c] + 2 * (int64_t)below[2 * r][c] + below[2 * r + 1][c];
+        }
+        for (int c = 1; c < LM_TILE_CELLS / 2; c++) {
+            const int64_t sum = 8 + sums[2 * c - 1] + 2 * sums[2 * c] + sums[2 * c + 1];
+            posts_q6[row0 + r][column0 + c] = (int32_t)(sum >> 4);
+        }
+    }
+}
+
 void image_posts_smooth(const int32_t (*const below[4])[LM_TILE_POSTS],
                         int32_t posts_q6[LM_TILE_POSTS][LM_TILE_POSTS])
 {
-    for (int r = 1; r < LM_TILE_CELLS; r++) {
-        for (int c = 1; c < LM_TILE_CELLS; c++) {
-            posts_q6[r][c] = mean_of_nine(below, 2 * r, 2 * c, posts_q6[r][c]);
+    enum { HALF = LM_TILE_CELLS / 2 };
+    for (int i = 0; i < 4; i++) {
+        if (below[i]) {
+            smooth_quarter(below[i], posts_q6, i / 2 * HALF, i % 2 * HALF);
+        }
+    }
+    for (int i = 1; i < LM_TILE_CELLS; i++) { /* between the four */
+        posts_q6[HALF][i] = mean_of_nine(below, LM_TILE_CELLS, 2 * i, posts_q6[HALF][i]);
+        if (i != HALF) {
+            posts_q6[i][HALF] = mean_of_nine(below, 2 * i, LM_TILE_CELLS, posts_q6[i][HALF]);
         }
     }
 }

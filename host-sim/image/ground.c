@@ -6,14 +6,25 @@
 
 enum { CELLS = LM_TILE_CELLS, HALF = LM_TILE_CELLS / 2 };
 
-/* Terrain of a tile at a place in one of its cells. Products of posts and places are exact. */
-static double terrain_q6(const struct lm_tile *tile, int row, int column, struct image_place place)
+/* Posts at the corners of a cell. */
+struct corners {
+    double south_west, south_east, north_west, north_east;
+};
+
+static struct corners corners_of(const struct lm_tile *tile, int row, int column)
+{
+    return (struct corners){(double)image_post_q6(tile, row, column),
+                            (double)image_post_q6(tile, row, column + 1),
+                            (double)image_post_q6(tile, row + 1, column),
+                            (double)image_post_q6(tile, row + 1, column + 1)};
+}
+
+/* Terrain at a place of the cell. Products of posts and places are exact. */
+static double terrain_q6(struct corners at, struct image_place place)
 {
     const double v = place.north_q16 / 65536.0, u = place.east_q16 / 65536.0;
-    const double south = (double)image_post_q6(tile, row, column) * (1 - u) +
-                         (double)image_post_q6(tile, row, column + 1) * u;
-    const double north = (double)image_post_q6(tile, row + 1, column) * (1 - u) +
-                         (double)image_post_q6(tile, row + 1, column + 1) * u;
+    const double south = at.south_west * (1 - u) + at.south_east * u;
+    const double north = at.north_west * (1 - u) + at.north_east * u;
     return south * (1 - v) + north * v;
 }
 
@@ -23,16 +34,15 @@ void image_ground_init(struct image_ground *g, const struct lm_tile *tile)
 {
     for (int r = 0; r < CELLS; r++) {
         for (int c = 0; c < CELLS; c++) {
-            g->top[r][c] = (struct image_top){terrain_q6(tile, r, c, middle), middle};
+            g->top[r][c] = (struct image_top){terrain_q6(corners_of(tile, r, c), middle), middle};
         }
     }
 }
 
 /* How far a top stands out of the terrain at its own place. */
-static double excess_q6(const struct lm_tile *tile, int row, int column,
-                        const struct image_top *top)
+static double excess_q6(struct corners at, const struct image_top *top)
 {
-    return top->q6 - terrain_q6(tile, row, column, top->place);
+    return top->q6 - terrain_q6(at, top->place);
 }
 
 /* The top of a cell: of the four below, the one that stands out most. A cell out of which none
@@ -40,14 +50,15 @@ static double excess_q6(const struct lm_tile *tile, int row, int column,
 static struct image_top highest(const struct lm_tile *tile, int row, int column,
                                 const struct image_ground *below, int fine_row, int fine_column)
 {
-    struct image_top best = {terrain_q6(tile, row, column, middle), middle};
+    const struct corners at = corners_of(tile, row, column);
+    struct image_top best = {terrain_q6(at, middle), middle};
     double most_q6 = 0;
     for (int i = 0; i < 4; i++) {
         const int north = i / 2, east = i % 2;
         struct image_top top = below->top[fine_row + north][fine_column + east];
         top.place.north_q16 = (uint16_t)((top.place.north_q16 + 65536 * north) / 2);
         top.place.east_q16 = (uint16_t)((top.place.east_q16 + 65536 * east) / 2);
-        const double out_q6 = excess_q6(tile, row, column, &top);
+        const double out_q6 = excess_q6(at, &top);
         if (out_q6 > most_q6) {
             most_q6 = out_q6;
             best = top;
@@ -82,9 +93,9 @@ double image_ground_crest_m(const struct image_ground *g, const struct lm_tile *
                             int column)
 {
     const struct image_top *top = &g->top[row][column];
-    const double out_q6 = fmax(excess_q6(tile, row, column, top), 0);
-    const double above_q6 =
-        terrain_q6(tile, row, column, top->place) - terrain_q6(tile, row, column, middle);
+    const struct corners at = corners_of(tile, row, column);
+    const double out_q6 = fmax(excess_q6(at, top), 0);
+    const double above_q6 = terrain_q6(at, top->place) - terrain_q6(at, middle);
     return (out_q6 + fmin(out_q6 / 2, fmax(above_q6, 0))) / 64;
 }
 
@@ -94,8 +105,8 @@ void image_ground_encode(const struct image_ground *g, struct lm_tile *tile,
     for (int r = 0; r < CELLS; r++) {
         for (int c = 0; c < CELLS; c++) {
             const uint16_t cell = g->cells[r][c];
-            const uint8_t crest =
-                image_height_code(heights_dm, 10 * image_ground_crest_m(g, tile, r, c));
+            const double crest_m = image_ground_crest_m(g, tile, r, c);
+            const uint8_t crest = image_height_code(heights_dm, 10 * crest_m);
             const bool has_crest =
                 image_cell_class(cell) != LM_DB_CLASS_NONE && crest > image_cell_height(cell);
             tile->points[r + LM_TILE_BORDER][c + LM_TILE_BORDER].cell =

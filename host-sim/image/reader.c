@@ -3,10 +3,10 @@
 #include "fx/crc32c.h"
 #include "hs/error.h"
 #include "hs/input_file.h"
-#include "hs/report.h"
 #include "hs/signature_file.h"
 #include "hs/zero_bytes.h"
 #include "image/grid.h"
+#include "image/pack.h"
 #include "lm/bus_record.h"
 #include "lm/radar_check.h"
 #include "lm/radar_record.h"
@@ -15,40 +15,12 @@
 #include <errno.h>
 #include <fcntl.h>
 #include <inttypes.h>
-#include <stdarg.h>
 #include <stdbool.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/mman.h>
 #include <sys/stat.h>
 #include <unistd.h>
-
-static void report_finding(uint64_t offset, const char *cause)
-{
-    hs_report_object(NULL);
-    hs_report_put("offset_bytes", offset);
-    hs_report_put("cause", cause);
-    hs_report_close();
-}
-
-void image_find(struct image_findings *f, uint64_t offset, const char *cause, ...)
-{
-    f->count++;
-    if ((!f->out && !f->is_reported) || f->count > f->shown_max) {
-        return;
-    }
-    char text[512];
-    va_list arguments;
-    va_start(arguments, cause);
-    vsnprintf(text, sizeof text, cause, arguments);
-    va_end(arguments);
-    if (f->out) {
-        fprintf(f->out, "offset 0x%08" PRIx64 ": %s\n", offset, text);
-    }
-    if (f->is_reported) {
-        report_finding(offset, text);
-    }
-}
 
 int image_map(struct image *image, const char *path)
 {
@@ -459,7 +431,7 @@ static int make_room(struct image *image, struct image_findings *f)
     if (!is_needed || image->unpacked) {
         return 0;
     }
-    image->unpacked = image_unpacked_new(image->header.entry_count);
+    image->unpacked = image_unpacked_new(image->header.entry_count, IMAGE_UNPACKED_TILES);
     if (!image->unpacked) {
         image_find(f, image->db.records_offset, "not enough memory to unpack its tiles");
     }
@@ -495,7 +467,7 @@ int image_open(struct image *image, const char *path)
     if (image_map(image, path) != 0) {
         return -1;
     }
-    struct image_findings findings = {stderr, 0, 4, false};
+    struct image_findings findings = {stderr, 0, 4, false, NULL};
     if (image_read_tables(image, &findings) != 0 || findings.count > 0) {
         const bool is_other_version = image->header.version != LM_DB_VERSION &&
                                       memcmp(image->header.magic, "LANDMASS", 8) == 0;
@@ -520,6 +492,16 @@ const struct lm_tile *image_entry_tile(const struct image *image, uint32_t entry
     return e->encoding == LM_TILE_RAW
                ? (const void *)record
                : image_unpacked_tile(image->unpacked, entry, record, e->size);
+}
+
+bool image_copy_tile(const struct image *image, uint32_t entry, struct lm_tile *tile)
+{
+    const struct lm_tile_entry *e = &image->entries[entry];
+    if (lm_db_entry_check(&image->db, entry, e) != LM_OK || e->place == LM_TILE_ABSENT) {
+        return false;
+    }
+    (void)image_unpack(image->bytes + image_record_offset(image, entry), e->size, tile);
+    return true;
 }
 
 const struct lm_tile *image_find_tile(const struct image *image, uint8_t level, uint32_t row,

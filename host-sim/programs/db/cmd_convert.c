@@ -32,7 +32,7 @@ static const struct hs_usage usage = {
  */
 static int verify(struct image *image, const char *path, const char *remedy, uint64_t *tiles)
 {
-    struct image_findings findings = {stderr, 0, 10, false};
+    struct image_findings findings = {stderr, 0, 10, false, NULL};
     struct image_verify_counts counts;
     const bool is_complete = image_verify(image, &findings, &counts) == 0;
     *tiles = counts.tiles;

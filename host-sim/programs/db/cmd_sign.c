@@ -27,7 +27,7 @@ static const struct hs_usage usage = {
 static int check_old(const char *path)
 {
     struct image image;
-    struct image_findings findings = {stderr, 0, 10, false};
+    struct image_findings findings = {stderr, 0, 10, false, NULL};
     struct image_verify_counts counts;
     if (image_map(&image, path) != 0) {
         return -1;

@@ -64,7 +64,7 @@ int db_cmd_verify(int argc, char **argv)
     if (image_map(&image, path) != 0) {
         return HS_EXIT_FAILED;
     }
-    struct image_findings findings = {stdout, 0, SHOWN_MAX, true};
+    struct image_findings findings = {stdout, 0, SHOWN_MAX, true, NULL};
     struct image_verify_counts n = {0};
     hs_report_array("faults");
     const bool is_complete = image_verify(&image, &findings, &n) == 0;

@@ -2,6 +2,7 @@
 #ifndef IMAGE_READER_H
 #define IMAGE_READER_H
 
+#include "image/findings.h"
 #include "image/format.h"
 #include "image/unpacked.h"
 #include "lm/bus_profile.h"
@@ -13,18 +14,6 @@
 #include <stdbool.h>
 #include <stddef.h>
 #include <stdint.h>
-#include <stdio.h>
-
-/* What was found wrong, as lines "offset 0x...: cause" on a stream. */
-struct image_findings {
-    FILE *out; /* borrowed; NULL: count only */
-    uint64_t count, shown_max;
-    bool is_reported; /* also as items of the array that is open in the report (hs/report.h) */
-};
-
-/* Note one more finding, in printf's manner. `offset` is in bytes into the image. */
-void image_find(struct image_findings *f, uint64_t offset, const char *cause, ...)
-    __attribute__((format(printf, 3, 4)));
 
 struct image {
     const uint8_t *bytes; /* the whole file, mapped, or lent by the caller */
@@ -71,7 +60,10 @@ void image_close(struct image *image);
  * at a time may ask. */
 const struct lm_tile *image_entry_tile(const struct image *image, uint32_t entry);
 
-/* The same of the tile at a place of the grid. */
+/* The same tile as a copy, which any thread may ask for. False when there is none. */
+bool image_copy_tile(const struct image *image, uint32_t entry, struct lm_tile *tile);
+
+/* What image_entry_tile gives of the tile at a place of the grid. */
 const struct lm_tile *image_find_tile(const struct image *image, uint8_t level, uint32_t row,
                                       uint32_t column);
 

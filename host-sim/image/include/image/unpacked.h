@@ -7,18 +7,19 @@
 
 #include <stdint.h>
 
-/* More than one row of tiles of any picture; 36 MB. */
+/* What a reader of pictures has: more than one row of tiles of any; 36 MB. */
 enum { IMAGE_UNPACKED_TILES = 2048 };
 
 struct image_unpacked; /* opaque */
 
-/* Room for the tiles of an image of so many directory entries, or NULL without memory. 4 bytes an
- * entry besides the tiles. image_unpacked_free takes NULL too. */
-struct image_unpacked *image_unpacked_new(uint32_t entries);
+/* Room for so many tiles, 2 or more, of an image of so many directory entries, or NULL without
+ * memory. 4 bytes an entry besides the tiles. image_unpacked_free takes NULL too. */
+struct image_unpacked *image_unpacked_new(uint32_t entries, uint32_t tiles);
 void image_unpacked_free(struct image_unpacked *u);
 
 /* The tile of a directory entry whose stored record, of `size` units, is given. All zeros if it
- * cannot be unpacked. Valid until IMAGE_UNPACKED_TILES - 1 other tiles have been asked for. */
+ * cannot be unpacked. Valid until one less than all other tiles that there is room for have been
+ * asked for. */
 const struct lm_tile *image_unpacked_tile(struct image_unpacked *u, uint32_t entry,
                                           const uint8_t *record, uint16_t size);
 

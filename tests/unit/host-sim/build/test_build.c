@@ -26,7 +26,7 @@ enum { CELLS = LM_TILE_CELLS };
 
 static void open_sound_image(struct image *image, const char *name)
 {
-    struct image_findings findings = {stdout, 0, 10, false};
+    struct image_findings findings = {stdout, 0, 10, false, NULL};
     struct image_verify_counts counts;
     assert_int_equal(image_map(image, scene_path(name)), 0);
     assert_int_equal(image_verify(image, &findings, &counts), 0);

@@ -200,7 +200,7 @@ static struct tiny_cell village(void *ctx, const struct tiny_place *p)
 static void open_tiny(struct tiny_image *tiny, struct image *image, double latitude,
                       double longitude)
 {
-    struct image_findings findings = {stdout, 0, 10, false};
+    struct image_findings findings = {stdout, 0, 10, false, NULL};
     struct tiny_spec spec = tiny_spec_at(latitude, longitude);
     spec.rows = 3;
     spec.columns = 4;
@@ -237,7 +237,7 @@ TEST(a_converted_image_is_the_one_that_version_3_would_have_been)
     for (size_t i = 0; i < sizeof places / sizeof places[0]; i++) {
         struct tiny_image tiny;
         struct image before, after;
-        struct image_findings findings = {stdout, 0, 10, false};
+        struct image_findings findings = {stdout, 0, 10, false, NULL};
         struct image_verify_counts counts;
         open_tiny(&tiny, &before, places[i][0], places[i][1]);
         const struct old_image old = old_image_of(&before);

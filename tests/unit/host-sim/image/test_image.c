@@ -187,6 +187,23 @@ TEST(a_coarser_cell_is_the_mean_of_four)
     }
 }
 
+/* Cells that differ in reflectivity alone take a way of their own, without a logarithm. */
+TEST(a_mean_of_any_two_reflectivities_has_the_code_of_its_logarithm)
+{
+    const struct lm_classes classes = town_classes();
+    const struct image_reduction halved = {&classes, 2, 1, IMAGE_VOTE_POWER};
+    for (int i = 0; i < 3 * 256 * 256; i++) {
+        const uint16_t a = image_cell((uint8_t)i, 2, 3), b = image_cell((uint8_t)(i >> 8), 2, 3);
+        const int others = i >> 16; /* of `a` besides the first */
+        const uint16_t four[4] = {a, others > 0 ? a : b, others > 1 ? a : b, b};
+        uint16_t coarse;
+        image_reduce(&halved, four, 2, &coarse, 1);
+        if (coarse != mean_of_four(four)) {
+            fail_msg("%04x %04x", a, b);
+        }
+    }
+}
+
 TEST(a_house_among_streets_wins_its_cell_by_its_power_and_not_by_count)
 {
     const struct lm_classes classes = town_classes();
@@ -305,7 +322,7 @@ static void build_tiny(struct tiny_image *image, double latitude, double longitu
 static uint64_t faults_of(const void *bytes, size_t size)
 {
     struct image image;
-    struct image_findings findings = {NULL, 0, 0, false};
+    struct image_findings findings = {NULL, 0, 0, false, NULL};
     struct image_verify_counts counts;
     image_lend(&image, bytes, size);
     image_verify(&image, &findings, &counts);
@@ -315,7 +332,7 @@ static uint64_t faults_of(const void *bytes, size_t size)
 static void print_faults(const void *bytes, size_t size)
 {
     struct image image;
-    struct image_findings findings = {stdout, 0, 10, false};
+    struct image_findings findings = {stdout, 0, 10, false, NULL};
     struct image_verify_counts counts;
     image_lend(&image, bytes, size);
     image_verify(&image, &findings, &counts);
@@ -391,7 +408,7 @@ TEST(a_cut_or_lengthened_image_is_found)
 static void look_at(const uint8_t *bytes, size_t size)
 {
     struct image image;
-    struct image_findings findings = {NULL, 0, 0, false};
+    struct image_findings findings = {NULL, 0, 0, false, NULL};
     image_lend(&image, bytes, size);
     if (image_read_tables(&image, &findings) != 0) {
         return;
@@ -607,6 +624,57 @@ TEST(a_lie_with_right_checksums_is_found)
         }
         tiny_image_free(&tiny);
     }
+}
+
+/* ---- threads ---- */
+
+/* What verification says of an image, with so many threads. Returns text that the caller frees. */
+static char *said_of(const struct tiny_image *tiny, uint32_t threads)
+{
+    char *text;
+    size_t size;
+    FILE *out = open_memstream(&text, &size);
+    assert_non_null(out);
+    struct image image;
+    struct image_findings findings = {out, 0, 40, false, NULL};
+    struct image_verify_counts n;
+    image_lend(&image, tiny->bytes, tiny->size);
+    const int status = image_verify_with(&image, &findings, &n, threads);
+    fprintf(out, "%d: %d faults, %d entries, %d tiles, %d edges, %d children\n", status,
+            (int)findings.count, (int)n.entries, (int)n.tiles, (int)n.edges, (int)n.children);
+    fclose(out);
+    image_close(&image);
+    return text;
+}
+
+/* Parts have 256 tiles: three parts, levels of 600, 150 and 40 tiles, faults in all of them, and
+ * more than are shown. */
+TEST(what_is_found_does_not_depend_on_how_many_threads_look)
+{
+    struct tiny_image tiny;
+    struct hs_rng rng;
+    build_tiny(&tiny, 46, 11, 20, 30);
+    assert_true(tiny.record_count > 2 * 256);
+    hs_rng_seed(&rng, 12);
+    for (int faults = 0; faults <= 120; faults += 30) {
+        for (int i = 0; i < faults && faults > 0; i++) {
+            const uint32_t number = (uint32_t)(hs_rng_u64(&rng) % tiny.record_count);
+            struct lm_tile *t = record_of(&tiny, number);
+            t->points[10 + i % 30][20].cell ^= 0x0100;
+            t->points[0][i % 60].post ^= i % 3 == 0 ? 0x40 : 0;
+            t->reserved0 = i % 5 == 0;
+        }
+        tiny_image_seal(&tiny);
+        char *alone = said_of(&tiny, 1);
+        for (uint32_t threads = 2; threads <= 5; threads++) {
+            char *together = said_of(&tiny, threads);
+            assert_string_equal(together, alone);
+            free(together);
+        }
+        assert_int_equal(strncmp(alone, "0: 0 faults", 11) == 0, faults == 0);
+        free(alone);
+    }
+    tiny_image_free(&tiny);
 }
 
 /* ---- writer ---- */

@@ -103,7 +103,7 @@ static const char *path_of(const char *name)
 
 static uint64_t faults_of(struct image *image)
 {
-    struct image_findings findings = {NULL, 0, 0, false};
+    struct image_findings findings = {NULL, 0, 0, false, NULL};
     struct image_verify_counts counts;
     assert_int_equal(image_verify(image, &findings, &counts), 0);
     return findings.count;
@@ -204,7 +204,7 @@ TEST(a_reader_unpacks_again_what_it_has_dropped)
     uint8_t record[LM_TILE_BYTES];
     struct hs_rng rng;
     hs_rng_seed(&rng, 4);
-    struct image_unpacked *u = image_unpacked_new(COUNT);
+    struct image_unpacked *u = image_unpacked_new(COUNT, IMAGE_UNPACKED_TILES);
     assert_non_null(u);
     struct lm_tile t = tile_of(3, &rng);
     for (uint32_t i = 0; i < 2 * COUNT; i++) {

@@ -18,7 +18,7 @@
 static inline uint64_t damage_faults(const void *bytes, size_t size)
 {
     struct image image;
-    struct image_findings findings = {NULL, 0, 0, false};
+    struct image_findings findings = {NULL, 0, 0, false, NULL};
     struct image_verify_counts counts;
     image_lend(&image, bytes, size);
     const int is_complete = image_verify(&image, &findings, &counts);
