@@ -235,6 +235,13 @@ double db_reflect_assign_among(const struct db_reflect_law *laws, const uint8_t 
 {
     static const double weight[9] = {1, 2, 1, 2, 4, 2, 1, 2, 1};
     const uint8_t own = around[4];
+    bool is_alone = true;
+    for (int i = 0; i < 9; i++) {
+        is_alone &= around[i] == own;
+    }
+    if (is_alone) { /* most ground: its shares are not worked out */
+        return db_reflect_assign(&laws[own], seed, p);
+    }
     double share[DB_CLASS_MAX] = {0}, power = 0;
     for (int i = 0; i < 9; i++) {
         const bool is_mixed =
