@@ -183,13 +183,18 @@ void db_reflect_law_init(struct db_reflect_law *law, const struct db_class *c, d
     law->mean_db += 10 * log10(power);
 }
 
-/* Without the pattern of the cell where that averages out. `own` is the seed of the class. */
-static double rank_at(const struct db_reflect_law *law, uint64_t own, struct reflect_place p,
-                      bool has_cell)
+/* What is alike within a field or a building. `own` is the seed of the class. */
+static double object_at(const struct db_reflect_law *law, uint64_t own, struct reflect_place p)
 {
     const bool grows = law->c->kind == DB_KIND_WATER || law->c->kind == DB_KIND_TREES;
-    const double object = grows ? reflect_pattern_smooth(own, p, smooth_m)
-                                : reflect_pattern_parcels(own, p, parcel_m);
+    return grows ? reflect_pattern_smooth(own, p, smooth_m)
+                 : reflect_pattern_parcels(own, p, parcel_m);
+}
+
+/* Without the pattern of the cell where that averages out. */
+static double rank_at(const struct db_reflect_law *law, uint64_t own, struct reflect_place p,
+                      double object, bool has_cell)
+{
     return law->weight[0] * object + law->weight[1] * reflect_pattern_smooth(own + 1, p, tens_m) +
            (has_cell ? law->weight[2] * reflect_pattern_smooth(own + 2, p, cell_m) : 0);
 }
@@ -201,18 +206,20 @@ static uint64_t own_seed(const struct db_reflect_law *law, uint64_t seed)
 
 double db_reflect_rank(const struct db_reflect_law *law, uint64_t seed, struct reflect_place p)
 {
-    return rank_at(law, own_seed(law, seed), p, true);
+    const uint64_t own = own_seed(law, seed);
+    return rank_at(law, own, p, object_at(law, own, p), true);
 }
 
 static double value_at(const struct db_reflect_law *law, uint64_t seed, struct reflect_place p,
-                       bool has_cell)
+                       double object, bool has_cell)
 {
     const struct db_class *c = law->c;
     if (c->spread_db <= 0) {
         return c->gamma_db;
     }
     const uint64_t own = own_seed(law, seed);
-    const double value = value_of_rank(law, rank_at(law, own, p, has_cell));
+    const double known = isnan(object) ? object_at(law, own, p) : object;
+    const double value = value_of_rank(law, rank_at(law, own, p, known, has_cell));
     if (law->spot_share <= 0) {
         return value;
     }
@@ -222,7 +229,7 @@ static double value_at(const struct db_reflect_law *law, uint64_t seed, struct r
 
 double db_reflect_assign(const struct db_reflect_law *law, uint64_t seed, struct reflect_place p)
 {
-    return value_at(law, seed, p, true);
+    return value_at(law, seed, p, NAN, true);
 }
 
 static bool mixes(const struct db_class *c)
@@ -231,7 +238,7 @@ static bool mixes(const struct db_class *c)
 }
 
 double db_reflect_assign_among(const struct db_reflect_law *laws, const uint8_t around[9],
-                               uint64_t seed, struct reflect_place p)
+                               double object, uint64_t seed, struct reflect_place p)
 {
     static const double weight[9] = {1, 2, 1, 2, 4, 2, 1, 2, 1};
     const uint8_t own = around[4];
@@ -239,8 +246,9 @@ double db_reflect_assign_among(const struct db_reflect_law *laws, const uint8_t 
     for (int i = 0; i < 9; i++) {
         is_alone &= around[i] == own;
     }
+    const double own_db = value_at(&laws[own], seed, p, object, true);
     if (is_alone) { /* most ground: its shares are not worked out */
-        return db_reflect_assign(&laws[own], seed, p);
+        return own_db;
     }
     double share[DB_CLASS_MAX] = {0}, power = 0;
     for (int i = 0; i < 9; i++) {
@@ -249,11 +257,13 @@ double db_reflect_assign_among(const struct db_reflect_law *laws, const uint8_t 
         share[is_mixed ? around[i] : own] += weight[i] / 16;
     }
     if (share[own] >= 1) {
-        return db_reflect_assign(&laws[own], seed, p);
+        return own_db;
     }
     for (int k = 0; k < DB_CLASS_MAX; k++) {
-        power +=
-            share[k] > 0 ? share[k] * exp(db_reflect_assign(&laws[k], seed, p) / db_per_neper) : 0;
+        if (share[k] > 0) {
+            const double db = k == own ? own_db : db_reflect_assign(&laws[k], seed, p);
+            power += share[k] * exp(db / db_per_neper);
+        }
     }
     return db_per_neper * log(power);
 }
@@ -273,7 +283,7 @@ double db_reflect_assign_cell(const struct db_reflect_law *law, uint64_t seed, d
         const double north = ((i / side + 0.5) / side - 0.5) * width_m;
         const struct reflect_place p =
             reflect_place_beside(middle, latitude, longitude, east, north);
-        power += exp(value_at(law, seed, p, width_m <= 4 * cell_m) / db_per_neper);
+        power += exp(value_at(law, seed, p, NAN, width_m <= 4 * cell_m) / db_per_neper);
     }
     /* Where the places are farther apart than what they stand for is wide, their mean varies more
      * than that of all the ground. */
@@ -288,17 +298,21 @@ void db_brightness_add(struct db_brightness *b, int class_index, double brightne
     b->count[class_index]++;
 }
 
+double db_brightness_deviations(const struct db_brightness *b, int class_index, double brightness)
+{
+    const double count = b->count[class_index];
+    const double mean = b->sum[class_index] / fmax(count, 1);
+    const double variance = b->square[class_index] / fmax(count, 1) - mean * mean;
+    return count < 2 || variance <= 1e-12 * mean * mean ? NAN
+                                                        : (brightness - mean) / sqrt(variance);
+}
+
 double db_reflect_adjust(const struct db_class *c, const struct db_brightness *b, int class_index,
                          double brightness)
 {
-    if (c->kind == DB_KIND_WATER || b->count[class_index] < 2) {
+    const double deviations = db_brightness_deviations(b, class_index, brightness);
+    if (c->kind == DB_KIND_WATER || isnan(deviations)) {
         return c->gamma_db;
     }
-    const double mean = b->sum[class_index] / b->count[class_index];
-    const double variance = b->square[class_index] / b->count[class_index] - mean * mean;
-    if (variance <= 1e-12 * mean * mean) {
-        return c->gamma_db;
-    }
-    const double value = c->gamma_db + c->spread_db * (brightness - mean) / sqrt(variance);
-    return fmin(c->high_db, fmax(c->low_db, value));
+    return fmin(c->high_db, fmax(c->low_db, c->gamma_db + c->spread_db * deviations));
 }

@@ -55,8 +55,8 @@ say "Segment the whole image"
     --out $out/classes.tif --picture $out/classes.png
 
 say "Assign reflectivity"
-"$bin"/landmass-db reflect --class-raster $out/classes.tif --classes $classes --method assign \
-    --out $out/reflectivity.tif
+"$bin"/landmass-db reflect --class-raster $out/classes.tif --classes $classes --method fields \
+    --image $out/scene/image.tif --out $out/reflectivity.tif
 
 join surroundings
 join bake

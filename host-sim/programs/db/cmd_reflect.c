@@ -27,9 +27,9 @@ static const struct hs_usage usage = {
     .description =
         "Writes the constant-gamma reflectivity of each pixel in dB (Float32 GeoTIFF, -9999 for "
         "no\n"
-        "data) from its class, by one of Heaton's two methods or from radar imagery, for a radar "
-        "at X band or\n"
-        "another --sensor of the class table:\n\n"
+        "data) from its class, by one of Heaton's two methods, what lies between them, or from "
+        "radar imagery,\n"
+        "for a radar at X band or another --sensor of the class table:\n\n"
         "  assign  random values with the class's mean, spread, limits and texture. Predictable, "
         "and borders\n"
         "          between classes soften where their limits overlap. The value depends on the "
@@ -39,6 +39,12 @@ static const struct hs_usage usage = {
         "          Where grown classes of ground and trees meet, a pixel has the mean power of "
         "those "
         "around it.\n"
+        "  fields  as assign, but what differs between fields, roofs and yards is the image's "
+        "brightness, and not\n"
+        "          an invented pattern of parcels: each field has a level of its own and ends "
+        "where "
+        "it ends.\n"
+        "          Needs --image. Water, and pixels without data in the image, are as by assign.\n"
         "  adjust  the image's brightness is kept as detail: the mean and spread of each class's "
         "brightness\n"
         "          are moved to its gamma_db and spread_db. Water becomes uniform. More detailed, "
@@ -60,8 +66,9 @@ static const struct hs_usage usage = {
         "share of 8..12 um\n"
         "radiation that is reflected, in dB; `landmass-db infrared` makes pictures of what is "
         "emitted.\n\n"
-        "A large raster is made in strips (--shards, --shard), on whatever machine. Adjust and "
-        "radar look at\n"
+        "A large raster is made in strips (--shards, --shard), on whatever machine. The other "
+        "methods "
+        "look at\n"
         "all pixels of a class before they give one its value, and do without.\n\n"
         "Example:\n"
         "  landmass-db reflect --class-raster scene-classes.tif --classes heaton6.classes \\\n"
@@ -82,9 +89,9 @@ struct options {
 static bool read_options(struct options *o, int argc, char **argv, int *exit_code)
 {
     struct hs_option table[] = {
-        HS_NEEDS_ROW("patches", "method=adjust"),
-        HS_NEEDS_ROW("bands", "method=adjust"),
-        HS_NEEDS_ROW("image", "method=adjust"),
+        HS_NEEDS_ROW("patches", "method=fields|method=adjust"),
+        HS_NEEDS_ROW("bands", "method=fields|method=adjust"),
+        HS_NEEDS_ROW("image", "method=fields|method=adjust"),
         HS_NEEDS_ROW("nodata", "image"),
         HS_NEEDS_ROW("black-is-nodata", "image"),
         HS_NEEDS_ROW("radar", "method=radar"),
@@ -103,11 +110,11 @@ static bool read_options(struct options *o, int argc, char **argv, int *exit_cod
          "What the values are for: a radar at X, Ku, Ka band or millimetre waves, or thermal "
          "infrared.",
          false},
-        {"method", HS_CHOICE, &o->method, 0, 0, "assign|adjust|radar",
+        {"method", HS_CHOICE, &o->method, 0, 0, "assign|fields|adjust|radar",
          "How values come about; see above.", false},
         {"patches", HS_INPUT, &o->patches, 0, 0, "FILE",
-         "With adjust: numbers of the pictures that the image is made of, from `import "
-         "--out-mask`.",
+         "With fields and adjust: numbers of the pictures that the image is made of, from\n"
+         "`import --out-mask`.",
          false},
         {"radar", HS_INPUT, &o->radar.path, 0, 0, "FILE",
          "With radar: the imagery, in any CRS and pixel size.", false},
@@ -138,12 +145,12 @@ static bool read_options(struct options *o, int argc, char **argv, int *exit_cod
         DB_IMAGE_OPTIONS(&o->image),
     };
     enum { COUNT = sizeof table / sizeof table[0] };
-    table[COUNT - 3].is_required = false; /* The image: only `adjust` looks at it. */
+    table[COUNT - 3].is_required = false; /* The image: two methods look at it. */
     return hs_options_read(&usage, table, COUNT, argc, argv, exit_code);
 }
 
 /* In the order of the words of --method and --calibrate. */
-enum method { ASSIGN, ADJUST, RADAR };
+enum method { ASSIGN, FIELDS, ADJUST, RADAR };
 enum calibration { BY_CLASS, BY_SCENE, NOT_AT_ALL };
 
 enum {
@@ -191,6 +198,16 @@ struct work {
     int block_rows;
 };
 
+static bool has_patterns(const struct work *w)
+{
+    return w->method == ASSIGN || w->method == FIELDS;
+}
+
+static bool has_image(const struct work *w)
+{
+    return w->method == FIELDS || w->method == ADJUST;
+}
+
 static int choose_bands(struct work *w)
 {
     const struct hs_list *list = &w->options->bands;
@@ -220,7 +237,7 @@ static int open_image(struct work *w)
     if (w->method == RADAR) {
         return radar_image_open(&w->radar, &w->options->radar, &w->classes.grid);
     }
-    if (w->method != ADJUST) {
+    if (!has_image(w)) {
         return 0;
     }
     if (db_image_open(&w->image, &w->options->image) != 0) {
@@ -253,7 +270,7 @@ static int open_patches(struct work *w)
 
 static int alloc_block(struct work *w)
 {
-    const size_t planes = w->method == ADJUST ? (size_t)w->image.band_count : 1;
+    const size_t planes = has_image(w) ? (size_t)w->image.band_count : 1;
     const size_t pixel = (planes + 2) * sizeof(float) + 3;
     w->block_rows = db_raster_block_rows(&w->classes.grid, pixel);
     const size_t count = (size_t)w->block_rows * (size_t)w->classes.grid.width;
@@ -364,7 +381,7 @@ static int read_block(struct work *w)
 {
     struct block *b = &w->block;
     const size_t count = (size_t)b->rows * (size_t)w->classes.grid.width;
-    if ((w->method == ASSIGN && read_around(w) != 0) ||
+    if ((has_patterns(w) && read_around(w) != 0) ||
         db_class_raster_read(&w->classes, &w->numbers, b->y, b->rows, b->values, b->class_valid,
                              b->classes) != 0) {
         return -1;
@@ -372,7 +389,7 @@ static int read_block(struct work *w)
     if (w->method == RADAR) {
         return radar_image_rows(&w->radar, b->y, b->rows, b->values);
     }
-    if (w->method == ASSIGN) {
+    if (!has_image(w)) {
         return 0;
     }
     if (read_patches(w) != 0 ||
@@ -404,19 +421,34 @@ static int measure_block(struct work *w)
     return 0;
 }
 
-/* The brightness of the pixel's own patch, or of all where there is too little of the class. */
-static double adjusted(struct work *w, size_t i)
+/* The brightness of the class in the pixel's own patch, or in all where there is too little. */
+static const struct db_brightness *brightness_about(struct work *w, size_t i)
 {
     const struct block *b = &w->block;
-    const int c = b->classes[i];
-    const struct db_brightness *own = &w->brightness;
-    if (w->by_patch) {
-        const struct db_brightness *patch = &w->by_patch[(int)b->patches[i]];
-        const bool is_enough = b->patches[i] > 0 && patch->count[c] >= (double)PATCH_PIXELS_MIN;
-        own = is_enough ? patch : own;
-        w->alone += !is_enough;
+    if (!w->by_patch) {
+        return &w->brightness;
     }
-    return db_reflect_adjust(&w->table.items[c], own, c, (double)b->values[i]);
+    const struct db_brightness *patch = &w->by_patch[(int)b->patches[i]];
+    const bool is_enough =
+        b->patches[i] > 0 && patch->count[b->classes[i]] >= (double)PATCH_PIXELS_MIN;
+    w->alone += !is_enough;
+    return is_enough ? patch : &w->brightness;
+}
+
+static double adjusted(struct work *w, size_t i)
+{
+    const int c = w->block.classes[i];
+    return db_reflect_adjust(&w->table.items[c], brightness_about(w, i), c,
+                             (double)w->block.values[i]);
+}
+
+/* What stands for the pattern of objects: the image, if it is to. */
+static double object_of(struct work *w, size_t i)
+{
+    const int c = w->block.classes[i];
+    return w->method == ASSIGN || w->table.items[c].kind == DB_KIND_WATER
+               ? (double)NAN
+               : db_brightness_deviations(brightness_about(w, i), c, (double)w->block.values[i]);
 }
 
 static double class_mean(const struct work *w, int c)
@@ -446,7 +478,7 @@ static void find_scene_offset(struct work *w)
 }
 
 /* The pixel's class and those around it decide. */
-static double assigned(const struct work *w, size_t i)
+static double assigned(struct work *w, size_t i)
 {
     const size_t width = (size_t)w->classes.grid.width, x = i % width;
     uint8_t around[9];
@@ -454,18 +486,19 @@ static double assigned(const struct work *w, size_t i)
         const bool is_beyond = (n % 3 == 0 && x == 0) || (n % 3 == 2 && x + 1 == width);
         around[n] = is_beyond ? DB_CLASS_NODATA : w->block.around[i + n / 3 * width + n % 3 - 1];
     }
-    return db_reflect_assign_among(w->laws, around, (uint64_t)w->options->seed, w->places.row[x]);
+    return db_reflect_assign_among(w->laws, around, object_of(w, i), (uint64_t)w->options->seed,
+                                   w->places.row[x]);
 }
 
 static double value_of(struct work *w, size_t i)
 {
     const struct block *b = &w->block;
     const int c = b->classes[i];
-    const bool is_missing = w->method != ASSIGN && isnan(b->values[i]);
-    w->filled += is_missing;
-    if (w->method == ASSIGN) {
+    if (has_patterns(w)) {
         return assigned(w, i);
     }
+    const bool is_missing = isnan(b->values[i]);
+    w->filled += is_missing;
     if (w->method == RADAR && is_missing) {
         return db_reflect_assign(&w->laws[c], (uint64_t)w->options->seed,
                                  w->places.row[i % (size_t)w->classes.grid.width]);
@@ -678,8 +711,8 @@ static int run(struct work *w)
 
 static const char *fault_of(const struct options *o, const char **option)
 {
-    *option = "--method adjust";
-    if (o->method == ADJUST && o->image.paths.count == 0) {
+    *option = o->method == FIELDS ? "--method fields" : "--method adjust";
+    if ((o->method == FIELDS || o->method == ADJUST) && o->image.paths.count == 0) {
         return "needs the image for its brightness: name it with --image";
     }
     *option = "--method radar";
@@ -692,7 +725,7 @@ static const char *fault_of(const struct options *o, const char **option)
     }
     *option = "--method radar";
     if (o->method == RADAR && o->sensor == HS_SENSOR_IR) {
-        return "takes radar imagery, which says nothing of the infrared; use assign or adjust";
+        return "takes radar imagery, which says nothing of the infrared; use another method";
     }
     *option = "--multilook";
     return o->radar.multilook % 2 == 0 ? "must be odd"

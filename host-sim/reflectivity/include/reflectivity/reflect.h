@@ -1,5 +1,5 @@
 /* Reflectivity of each pixel: Heaton's two ways from classes to radar (section "Database
- * preparation overview").
+ * preparation overview"), and what lies between them.
  *
  * Values are constant-gamma reflectivities in dB. Speckle is no part of them: the display unit
  * multiplies it in. */
@@ -64,9 +64,11 @@ double db_reflect_assign(const struct db_reflect_law *law, uint64_t seed, struct
  * A map's pixel has one class, and its ground more: where grown classes of ground or trees meet,
  * the value is the mean power of theirs at the place, weighted 1 2 1 both ways. What people laid
  * out, water and structures keep their edge: such a pixel around counts as the pixel's own class.
- */
+ *
+ * `object` takes the place of the pattern of objects for the pixel's own class: what its field or
+ * roof has, in deviations from the class's mean (db_brightness_deviations). NAN: the pattern. */
 double db_reflect_assign_among(const struct db_reflect_law *laws, const uint8_t around[9],
-                               uint64_t seed, struct reflect_place p);
+                               double object, uint64_t seed, struct reflect_place p);
 
 /* The value of a cell of `width_m` a side around a place, as the mean power of its ground has it:
  * up to 5 m the value at its middle; beyond, the mean power at up to 4 x 4 places of it. */
@@ -79,6 +81,10 @@ struct db_brightness {
 };
 
 void db_brightness_add(struct db_brightness *b, int class_index, double brightness);
+
+/* How far a brightness is from its class's mean, in deviations. NAN for NAN, and for a class of
+ * one brightness. */
+double db_brightness_deviations(const struct db_brightness *b, int class_index, double brightness);
 
 /* The value of a pixel of the class from its brightness: mean and spread of the class's brightness
  * become its gamma_db and spread_db, held within the limits. Water is set to gamma_db throughout, a

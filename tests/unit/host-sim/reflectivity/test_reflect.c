@@ -269,16 +269,37 @@ TEST(a_pixel_among_grown_classes_has_the_mean_power_of_all_of_them)
             const double woods_db = db_reflect_assign(&laws[WOODS], 1, p);
             const double power =
                 cases[n].soil * pow(10, soil_db / 10) + cases[n].woods * pow(10, woods_db / 10);
-            const double db = db_reflect_assign_among(laws, cases[n].around, 1, p);
+            const double db = db_reflect_assign_among(laws, cases[n].around, (double)NAN, 1, p);
             assert_true(fabs(db - 10 * log10(power)) < 1e-9);
         }
     }
     for (uint8_t own = TOWN; own <= ROAD; own++) {
         const uint8_t around[9] = {SOIL, SOIL, SOIL, WOODS, own, WOODS, SOIL, SOIL, SOIL};
         const struct reflect_place p = near_by(own, 5);
-        assert_true(fabs(db_reflect_assign_among(laws, around, 1, p) -
+        assert_true(fabs(db_reflect_assign_among(laws, around, (double)NAN, 1, p) -
                          db_reflect_assign(&laws[own], 1, p)) < 1e-12);
     }
+}
+
+/* Of a field's level 57 % of the variance, less the cell's part, is the object's. */
+TEST(an_image_takes_the_place_of_the_pattern_of_objects)
+{
+    static double values[SIDE * SIDE];
+    struct db_reflect_law law;
+    db_reflect_law_init(&law, &soil, 5);
+    const uint8_t around[9] = {0};
+    struct hs_rng rng;
+    hs_rng_seed(&rng, 5);
+    double with_image = 0;
+    for (int i = 0; i < SIDE * SIDE; i++) {
+        const double deviations = hs_rng_normal(&rng);
+        values[i] = db_reflect_assign_among(&law, around, deviations, 1, far_apart(i));
+        with_image += deviations * (values[i] - soil.gamma_db) / soil.spread_db / (SIDE * SIDE);
+    }
+    const struct moments m = measure(values, SIDE * SIDE);
+    print_message("# correlation with the image %.3f\n", with_image);
+    assert_true(fabs(m.mean - soil.gamma_db) < 0.05 && fabs(m.deviation - soil.spread_db) < 0.05);
+    assert_true(fabs(with_image - sqrt(0.57 * (1 - 1 / (soil.spread_db * soil.spread_db)))) < 0.02);
 }
 
 static int by_value(const void *a, const void *b)
@@ -413,14 +434,20 @@ static const char classes[] =
     "[lake]\ncolour = 2 2 2\nkind = water\ngamma_db = -40\nspread_db = 3\nlimits_db = -43 -37\n"
     "[town]\ncolour = 3 3 3\nkind = structure\ngamma_db = 0\nspread_db = 5\nlimits_db = -6 6\n";
 
+static struct db_grid grid_of(double pixel_m)
+{
+    struct db_grid grid = fixture_grid(SIDE, SIDE);
+    grid.geotransform[1] = pixel_m * 307 / 311;
+    grid.geotransform[5] = -pixel_m;
+    return grid;
+}
+
 /* Three stripes of class and a column of no data; brightness of each its own. Pixels as large as
  * 300 m have no two alike. */
 static void write_scene_of(double pixel_m)
 {
     static float class_of[SIDE * SIDE], brightness[SIDE * SIDE];
-    struct db_grid grid = fixture_grid(SIDE, SIDE);
-    grid.geotransform[1] = pixel_m * 307 / 311;
-    grid.geotransform[5] = -pixel_m;
+    const struct db_grid grid = grid_of(pixel_m);
     struct hs_rng rng;
     hs_rng_seed(&rng, 1);
     for (int i = 0; i < SIDE * SIDE; i++) {
@@ -614,6 +641,55 @@ TEST(adjusted_rasters_keep_the_detail_and_make_water_uniform)
     }
 }
 
+/* Correlation of the field's pixels with the image. */
+static double likeness(const float *values, const float *bright)
+{
+    double product = 0, count = 0;
+    for (int i = 0; i < SIDE * SIDE; i++) {
+        if (i % SIDE < SIDE / 3 && bright[i] >= 0) {
+            product += (double)(values[i] + 20) / 3 * (double)(bright[i] - 50) / 7;
+            count++;
+        }
+    }
+    return product / count;
+}
+
+TEST(fields_have_the_images_levels_and_the_textures_of_their_classes)
+{
+    static float values[SIDE * SIDE], assigned[SIDE * SIDE], bright[SIDE * SIDE];
+    static uint8_t valid[SIDE * SIDE];
+    write_scene();
+    read_values("bright.tif", bright, valid);
+    for (int i = 0; i < 20 * SIDE; i++) {
+        bright[i] = -1; /* no data */
+    }
+    const struct db_grid grid = grid_of(311);
+    fixture_raster("gaps.tif", &grid, GDT_Float32, bright, -1);
+    OSRDestroySpatialReference(grid.crs);
+    const struct {
+        const char *method, *out;
+    } made[] = {{"assign", "assigned.tif"}, {"fields --image", "fields.tif"}};
+    for (int n = 0; n < 2; n++) {
+        assert_int_equal(
+            fixture_run(NULL, 0, "reflect --method %s %s --class-raster %s --classes %s --out %s",
+                        made[n].method, n ? fixture_path("gaps.tif") : "",
+                        fixture_path("class.tif"), fixture_path("three.classes"),
+                        fixture_path(made[n].out)),
+            0);
+    }
+    read_values("assigned.tif", assigned, valid);
+    read_values("fields.tif", values, valid);
+    for (int i = 0; i < SIDE * SIDE; i++) {
+        const bool is_lake = i % SIDE != SIDE - 1 && 3 * (i % SIDE) / SIDE == 1;
+        assert_true(values[i] == assigned[i] || (bright[i] >= 0 && !is_lake));
+    }
+    const struct moments field = measure_stripe(values, 0);
+    assert_true(fabs(field.mean + 20) < 0.1 && fabs(field.deviation - 3) < 0.1);
+    const double with_image = likeness(values, bright), without = likeness(assigned, bright);
+    print_message("# correlation with the image %.2f, of assign %.2f\n", with_image, without);
+    assert_true(fabs(with_image - sqrt(0.57 * (1 - 1.0 / 9))) < 0.03 && fabs(without) < 0.03);
+}
+
 TEST(the_command_says_what_is_wrong)
 {
     write_scene();
@@ -622,9 +698,12 @@ TEST(the_command_says_what_is_wrong)
     assert_true(fixture_fails(HS_EXIT_USAGE, "needs the image",
                               "reflect --method adjust --class-raster %s --classes %s --out %s",
                               raster, table, out));
-    assert_true(fixture_fails(HS_EXIT_USAGE, "--method guess: needs assign, adjust or radar",
-                              "reflect --method guess --class-raster %s --classes %s --out %s",
+    assert_true(fixture_fails(HS_EXIT_USAGE, "--method fields: needs the image",
+                              "reflect --method fields --class-raster %s --classes %s --out %s",
                               raster, table, out));
+    assert_true(fixture_fails(
+        HS_EXIT_USAGE, "--method guess: needs assign, fields, adjust or radar",
+        "reflect --method guess --class-raster %s --classes %s --out %s", raster, table, out));
     assert_true(fixture_fails(HS_EXIT_USAGE, "says nothing of the infrared",
                               "reflect --method radar --radar %s --radar-unit db --sensor ir "
                               "--class-raster %s --classes %s --out %s",

@@ -121,7 +121,7 @@ TEST(a_class_is_even_over_the_edge_of_two_pictures_at_every_level)
 TEST(masks_that_are_none_are_refused)
 {
     write_patches();
-    assert_true(fixture_fails(2, "--patches: needs --method adjust", REFLECT "--patches %s",
+    assert_true(fixture_fails(2, "--patches: needs --method fields", REFLECT "--patches %s",
                               REFLECT_PATHS, fixture_path("mask.tif")));
     assert_true(fixture_fails(1, "numbers of patches are whole",
                               REFLECT "--method adjust --image %s --patches %s", REFLECT_PATHS,
