@@ -5,7 +5,11 @@
 #include "neon.h"
 
 /* Sixteen cells a turn from the map to their levels, for so many bytes a vector holds. What
- * c/light.c does in several loops is one here, and small tables are held in registers. */
+ * c/light.c does in several loops is one here, and small tables are held in registers.
+ *
+ * A turn's cells stand in columns: a vector of four has every fourth, so that three of four cells
+ * find the one before them in the vector before. Bytes and halves have the same order: first
+ * cells 0, 4, 8, 12, then 1, 5, 9, 13. Loads and stores of four vectors bring it about. */
 
 enum { NEON_CELLS = 16 }; /* that a turn takes */
 
@@ -13,14 +17,15 @@ _Static_assert(LM_CELLS_MAX % NEON_CELLS == 0, "a whole number of turns fits in 
 _Static_assert(LM_K_CODES == 16, "a vector looks up all codes at once");
 
 /* Heights of the codes and gains of the classes, lower bytes and upper bytes; edges of the marks,
- * marks of the classes. */
+ * marks of the classes; where a cell's neighbour before it stands. */
 struct neon_class_lut {
-    uint8x16_t height_dm[2], gain_db_q8[2], edge_db_q3, mark;
+    uint8x16_t height_dm[2], gain_db_q8[2], edge_db_q3, mark, one_before;
 };
 
-/* What a turn takes over from the one before it; and marks of all cells so far that were left. */
+/* What a turn takes over from the one before it: its last four horizons, its marks; and marks of
+ * all cells so far that were left. */
 struct neon_before {
-    int32x4_t tangent, of_two, horizon;
+    int32x4_t horizon;
     uint8x16_t mark, left;
 };
 
@@ -40,6 +45,10 @@ struct neon_place {
     uint8_t *behind_shore;
 };
 
+/* Where a cell's neighbour before it stands among sixteen; the first one's is in the turn before.
+ */
+static const uint8_t one_before[NEON_CELLS] = {0, 12, 13, 14, 0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11};
+
 static inline struct neon_class_lut neon_class_lut_of(const struct lm_k_lit_line *line)
 {
     struct neon_class_lut l;
@@ -48,6 +57,8 @@ static inline struct neon_class_lut neon_class_lut_of(const struct lm_k_lit_line
     l.edge_db_q3 = vsetq_lane_u8(line->edge_structure_db_q3, vdupq_n_u8(0), LM_K_STRUCTURE);
     l.edge_db_q3 = vsetq_lane_u8(line->edge_trees_db_q3, l.edge_db_q3, LM_K_TREES);
     l.mark = vld1q_u8(line->mark_of_class);
+    l.one_before = vld1q_u8(one_before);
+    __asm__("" : "+w"(l.one_before)); /* else it is loaded with its address each turn */
     return l;
 }
 
@@ -56,9 +67,9 @@ static inline int32x4x4_t neon_tangents(const struct neon_class_lut *l, const st
                                         uint8x16_t code)
 {
     const uint16x8x2_t height_dm = neon_words_of_16(l->height_dm, code);
-    const uint32x4x4_t foot_q14 = vld1q_u32_x4(at->elevation_m_q14);
-    const uint32x4x4_t fall_m_q14 = vld1q_u32_x4(at->fall_m_q14);
-    const int32x4x4_t inverse_range = vld1q_s32_x4(at->inverse_range);
+    const uint32x4x4_t foot_q14 = vld4q_u32(at->elevation_m_q14);
+    const uint32x4x4_t fall_m_q14 = vld4q_u32(at->fall_m_q14);
+    const int32x4x4_t inverse_range = vld4q_s32(at->inverse_range);
     int32x4x4_t tangent;
     for (size_t n = 0; n < 4; n++) {
         const uint16x8_t pair_dm = height_dm.val[n / 2];
@@ -72,22 +83,53 @@ static inline int32x4x4_t neon_tangents(const struct neon_class_lut *l, const st
     return tangent;
 }
 
-/* The horizon behind each of four cells. */
-static inline int32x4_t neon_horizon(struct neon_before *b, int32x4_t tangent)
+/* The horizons before each column of four, whose highest tangents are given. A horizon never falls:
+ * what is shifted in beside the last one, of cells before it, changes nothing. */
+static inline int32x4_t neon_before_columns(int32x4_t horizon, int32x4_t highest)
 {
-    const int32x4_t of_two = vmaxq_s32(tangent, vextq_s32(b->tangent, tangent, 3));
-    const int32x4_t of_four = vmaxq_s32(of_two, vextq_s32(b->of_two, of_two, 2));
-    b->tangent = tangent;
-    b->of_two = of_two;
-    return vmaxq_s32(of_four, b->horizon);
+    const int32x4_t one = vextq_s32(horizon, highest, 3);
+    const int32x4_t two = vmaxq_s32(one, vextq_s32(horizon, one, 3));
+    return vmaxq_s32(two, vextq_s32(horizon, two, 2));
 }
 
-/* By how much the horizon rises over each of four cells. */
-static inline uint32x4_t neon_rise(struct neon_before *b, int32x4_t tangent)
+/* vst4q_s32, and on: gcc 12 would put four vectors together on the stack, or copy each. */
+static inline int32_t *neon_store_columns(int32_t *to, int32x4x4_t x)
 {
-    const int32x4_t before = b->horizon;
-    b->horizon = neon_horizon(b, tangent);
-    return vreinterpretq_u32_s32(vsubq_s32(b->horizon, vextq_s32(before, b->horizon, 3)));
+    register int32x4_t first __asm__("v20") = x.val[0], second __asm__("v21") = x.val[1],
+                             third __asm__("v22") = x.val[2], fourth __asm__("v23") = x.val[3];
+    __asm__ volatile("st4 {%1.4s, %2.4s, %3.4s, %4.4s}, [%0], #64"
+                     : "+r"(to)
+                     : "w"(first), "w"(second), "w"(third), "w"(fourth)
+                     : "memory");
+    return to;
+}
+
+/* vst2q_s16 likewise. */
+static inline int16_t *neon_store_pairs(int16_t *to, int16x8x2_t x)
+{
+    register int16x8_t even __asm__("v20") = x.val[0], odd __asm__("v21") = x.val[1];
+    __asm__ volatile("st2 {%1.8h, %2.8h}, [%0], #32" : "+r"(to) : "w"(even), "w"(odd) : "memory");
+    return to;
+}
+
+/* Store the horizons behind sixteen cells. Returns by how much the horizon rises over each. */
+static inline uint32x4x4_t neon_rise(struct neon_before *b, int32x4x4_t tangent, int32_t **to)
+{
+    int32x4x4_t horizon = tangent;
+    uint32x4x4_t rise;
+    for (size_t n = 1; n < 4; n++) {
+        horizon.val[n] = vmaxq_s32(horizon.val[n - 1], tangent.val[n]);
+    }
+    const int32x4_t first = neon_before_columns(b->horizon, horizon.val[3]);
+    int32x4_t before = first;
+    for (size_t n = 0; n < 4; n++) {
+        horizon.val[n] = vmaxq_s32(horizon.val[n], first);
+        rise.val[n] = vreinterpretq_u32_s32(vsubq_s32(horizon.val[n], before));
+        before = horizon.val[n];
+    }
+    b->horizon = before;
+    *to = neon_store_columns(*to, horizon);
+    return rise;
 }
 
 /* Brightness of the leading edges of cells whose classes are given, of which the hidden ones change
@@ -96,7 +138,7 @@ static inline uint8x16_t neon_edges(const struct neon_class_lut *l, struct neon_
                                     uint8x16_t hidden, uint8x16_t class_index, uint8x16_t *left)
 {
     const uint8x16_t mark = vbslq_u8(hidden, b->mark, vqtbl1q_u8(l->mark, class_index));
-    const uint8x16_t before = vextq_u8(b->mark, mark, 15);
+    const uint8x16_t before = vcopyq_laneq_u8(vqtbl1q_u8(mark, l->one_before), 0, b->mark, 15);
     b->mark = mark;
     *left = vbicq_u8(before, mark);
     b->left = vorrq_u8(b->left, *left);
@@ -116,22 +158,33 @@ static inline struct neon_levels neon_shown(uint8x16_t edge_db_q3, uint16x8x2_t 
         own_q8.val[n] = vsraq_n_u16(vaddq_u16(own_q8.val[n], more_q8.val[n]),
                                     vandq_u16(cells.val[n], vdupq_n_u16(0xFF00)), 1);
     }
-    return neon_add_db_q8_of_16(own_q8, rise);
+    return neon_add_db_q8_of_16(own_q8, neon_octaves_of(rise));
+}
+
+/* The gains of place of sixteen cells. */
+static inline int16x8x2_t neon_gains(const int16_t *gain_db_q8)
+{
+    const int16x8x2_t pairs = vld2q_s16(gain_db_q8);
+    return vuzpq_s16(pairs.val[0], pairs.val[1]);
 }
 
 /* Store the levels of sixteen cells: what they show, of which LM_LEVEL_SHADOW is 0, and the gains
  * of place and class. */
-static inline void neon_store_levels(const struct neon_place *at, struct neon_levels shown,
+static inline void neon_store_levels(struct neon_place *at, struct neon_levels shown,
                                      uint16x8x2_t class_gain_db_q8)
 {
+    const int16x8x2_t gain_db_q8 = neon_gains(at->gain_db_q8);
+    int16x8_t level_q8[2];
     for (size_t n = 0; n < 2; n++) {
-        const int16x8_t gain_q8 = vqaddq_s16(vld1q_s16(at->gain_db_q8 + 8 * n),
-                                             vreinterpretq_s16_u16(class_gain_db_q8.val[n]));
+        const int16x8_t gain_q8 =
+            vqaddq_s16(gain_db_q8.val[n], vreinterpretq_s16_u16(class_gain_db_q8.val[n]));
         const int16x8_t shown_q8 =
             vreinterpretq_s16_u16(veorq_u16(shown.level_db_q8.val[n], vdupq_n_u16(0x8000)));
-        vst1q_s16(at->level_db_q8 + 8 * n, vbslq_s16(shown.is_none[n], vdupq_n_s16(LM_LEVEL_SHADOW),
-                                                     vqaddq_s16(shown_q8, gain_q8)));
+        level_q8[n] = vbslq_s16(shown.is_none[n], vdupq_n_s16(LM_LEVEL_SHADOW),
+                                vqaddq_s16(shown_q8, gain_q8));
     }
+    /* Those of even numbers, and those of odd ones. */
+    at->level_db_q8 = neon_store_pairs(at->level_db_q8, vzipq_s16(level_q8[0], level_q8[1]));
 }
 
 /* Sixteen cells; their horizon, level and whether they are behind a shore are stored. */
@@ -140,16 +193,14 @@ static inline __attribute__((always_inline)) void neon_cells(const struct neon_c
                                                              struct neon_before *b,
                                                              struct neon_place *at)
 {
-    const uint32x4x4_t words = vld1q_u32_x4(at->cell);
+    const uint32x4x4_t words = vld4q_u32(at->cell);
     const uint16x8x2_t cells = neon_lower_halves(words);
     const uint8x16_t lower = neon_lower_bytes(cells);
-    const int32x4x4_t seen = neon_tangents(l, at, vandq_u8(lower, vdupq_n_u8(LM_K_CODES - 1)));
-    uint32x4x4_t rise;
+    int32x4x4_t seen = neon_tangents(l, at, vandq_u8(lower, vdupq_n_u8(LM_K_CODES - 1)));
     for (size_t n = 0; n < 4; n++) {
-        rise.val[n] =
-            neon_rise(b, vbslq_s32(hidden->words.val[n], vdupq_n_s32(INT32_MIN), seen.val[n]));
-        vst1q_s32(at->horizon + 4 * n, b->horizon);
+        seen.val[n] = vbslq_s32(hidden->words.val[n], vdupq_n_s32(INT32_MIN), seen.val[n]);
     }
+    const uint32x4x4_t rise = neon_rise(b, seen, &at->horizon);
     uint8x16_t left;
     const uint8x16_t class_index = vshrq_n_u8(lower, 4);
     const uint8x16_t edge_db_q3 = neon_edges(l, b, hidden->bytes, class_index, &left);
@@ -161,8 +212,6 @@ static inline __attribute__((always_inline)) void neon_cells(const struct neon_c
     at->fall_m_q14 += NEON_CELLS;
     at->gain_db_q8 += NEON_CELLS;
     at->inverse_range += NEON_CELLS;
-    at->horizon += NEON_CELLS;
-    at->level_db_q8 += NEON_CELLS;
     at->behind_shore += NEON_CELLS;
     /* Else the compiler would add up one distance and, with it, five addresses. */
     __asm__(""
@@ -173,11 +222,11 @@ static inline __attribute__((always_inline)) void neon_cells(const struct neon_c
 /* The first `count` cells of a turn. */
 static inline struct neon_hidden neon_hide(uint32_t count)
 {
-    static const uint32_t number[4] = {0, 1, 2, 3};
+    static const uint32_t number[4] = {0, 4, 8, 12};
     struct neon_hidden h;
     for (uint32_t n = 0; n < 4; n++) {
         h.words.val[n] =
-            vcltq_u32(vaddq_u32(vld1q_u32(number), vdupq_n_u32(4 * n)), vdupq_n_u32(count));
+            vcltq_u32(vaddq_u32(vld1q_u32(number), vdupq_n_u32(n)), vdupq_n_u32(count));
     }
     h.bytes = neon_lower_bytes(neon_lower_halves(h.words));
     return h;
@@ -228,6 +277,10 @@ static inline void neon_add_shores(const struct lm_k_lit_line *line, uint64_t ei
     }
 }
 
+/* Where the bytes of sixteen cells stand. */
+static const uint8_t row_of_columns[NEON_CELLS] = {0, 4, 8,  12, 1, 5, 9,  13,
+                                                   2, 6, 10, 14, 3, 7, 11, 15};
+
 /* Shores are rare: they are looked for where a stretch, which may end behind the line, has one.
  * Each cell has a byte, from those of `first` on. */
 static inline void neon_shores(const struct lm_k_lit_line *line, const uint8_t *behind_shore,
@@ -240,9 +293,11 @@ static inline void neon_shores(const struct lm_k_lit_line *line, const uint8_t *
         at += LM_K_SHORE_STRETCH;
         if (vmaxvq_u8(some) != 0) {
             const uint32_t behind = (uint32_t)(at - behind_shore);
-            for (uint32_t i = behind - LM_K_SHORE_STRETCH; i < behind; i += 8) {
-                const uint8x8_t eight = vld1_u8(behind_shore + i);
-                neon_add_shores(line, vget_lane_u64(vreinterpret_u64_u8(eight), 0), i);
+            for (uint32_t i = behind - LM_K_SHORE_STRETCH; i < behind; i += NEON_CELLS) {
+                const uint64x2_t eights = vreinterpretq_u64_u8(
+                    vqtbl1q_u8(vld1q_u8(behind_shore + i), vld1q_u8(row_of_columns)));
+                neon_add_shores(line, vgetq_lane_u64(eights, 0), i);
+                neon_add_shores(line, vgetq_lane_u64(eights, 1), i + 8);
             }
         }
     }
@@ -253,8 +308,7 @@ static inline struct neon_before neon_before_of(const struct lm_k_lit_line *line
 {
     const int32x4_t all = vdupq_n_s32(line->start);
     const uint32_t class_index = line->tops.cell[line->tops.first] >> 4 & (LM_K_CODES - 1);
-    return (struct neon_before){all, all, all, vdupq_n_u8(line->mark_of_class[class_index]),
-                                vdupq_n_u8(0)};
+    return (struct neon_before){all, vdupq_n_u8(line->mark_of_class[class_index]), vdupq_n_u8(0)};
 }
 
 void lm_k_light(const struct lm_k_lit_line *line)
@@ -317,8 +371,7 @@ int32_t lm_k_highest_tangent(const struct lm_k_tops *tops)
                                           (const uint32_t *)tops->elevation_m_q14 + begin,
                                       .fall_m_q14 = (const uint32_t *)tops->fall_m_q14 + begin,
                                       .inverse_range = tops->inverse_range + begin};
-        const uint8x16_t lower =
-            neon_lower_bytes(neon_lower_halves(vld1q_u32_x4(tops->cell + begin)));
+        const uint8x16_t lower = neon_lower_bytes(neon_lower_halves(vld4q_u32(tops->cell + begin)));
         highest = neon_highest_of(
             highest, neon_tangents(&l, &at, vandq_u8(lower, vdupq_n_u8(LM_K_CODES - 1))));
         end = begin + NEON_CELLS;

@@ -93,14 +93,32 @@ struct neon_levels {
     uint16x8_t is_none[2];
 };
 
+/* Sixteen powers as decibels are worked out from them: the upper halves of each, shifted up by its
+ * zeros, and the zeros. */
+struct neon_octaves {
+    uint16x8_t top[2], zeros[2];
+};
+
+/* Those of powers in their order. */
+static inline struct neon_octaves neon_octaves_of(uint32x4x4_t power)
+{
+    struct neon_octaves o;
+    for (size_t n = 0; n < 2; n++) {
+        const uint32x4_t low = power.val[2 * n], high = power.val[2 * n + 1];
+        o.top[n] = neon_tops(low, high);
+        o.zeros[n] = vuzp1q_u16(vreinterpretq_u16_u32(vclzq_u32(low)),
+                                vreinterpretq_u16_u32(vclzq_u32(high)));
+    }
+    return o;
+}
+
 /* The same of sixteen, where all fits in 16 bits: the decibels take 24659. An octave's fraction of
  * a step is added before it is cut off, whole steps are behind. */
-static inline struct neon_levels neon_add_db_q8_of_16(uint16x8x2_t level_db_q8, uint32x4x4_t power)
+static inline struct neon_levels neon_add_db_q8_of_16(uint16x8x2_t level_db_q8,
+                                                      struct neon_octaves power)
 {
     struct neon_levels sum;
-    const uint16x8_t top[2] = {neon_tops(power.val[0], power.val[1]),
-                               neon_tops(power.val[2], power.val[3])};
-    const uint8x16_t mantissa = vshrn_high_n_u16(vshrn_n_u16(top[0], 7), top[1], 7);
+    const uint8x16_t mantissa = vshrn_high_n_u16(vshrn_n_u16(power.top[0], 7), power.top[1], 7);
     const uint8x16_t line = vshrq_n_u8(mantissa, 4);
     const uint8x16_t base[2] = {vqtbl1q_u8(vld1q_u8(fx_table_db_lines[0]), line),
                                 vqtbl1q_u8(vld1q_u8(fx_table_db_lines[1]), line)};
@@ -110,13 +128,11 @@ static inline struct neon_levels neon_add_db_q8_of_16(uint16x8x2_t level_db_q8, 
                  vget_low_u8(mantissa)),
         vmlal_high_u8(vreinterpretq_u16_u8(vzip2q_u8(base[0], base[1])), slope, mantissa)};
     for (size_t n = 0; n < 2; n++) {
-        const uint16x8_t zeros = vuzp1q_u16(vreinterpretq_u16_u32(vclzq_u32(power.val[2 * n])),
-                                            vreinterpretq_u16_u32(vclzq_u32(power.val[2 * n + 1])));
-        const uint16x8_t octave = veorq_u16(zeros, vdupq_n_u16(31));
+        const uint16x8_t octave = veorq_u16(power.zeros[n], vdupq_n_u16(31));
         const uint16x8_t fine_q13 = vmlaq_n_u16(db_q13[n], octave, FX_DB_PER_OCTAVE_Q13 % 32);
         sum.level_db_q8.val[n] = vmlaq_n_u16(vsraq_n_u16(level_db_q8.val[n], fine_q13, 5), octave,
                                              FX_DB_PER_OCTAVE_Q13 / 32);
-        sum.is_none[n] = vceqq_u16(zeros, vdupq_n_u16(32));
+        sum.is_none[n] = vceqq_u16(power.zeros[n], vdupq_n_u16(32));
     }
     return sum;
 }
