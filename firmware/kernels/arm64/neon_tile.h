@@ -16,9 +16,9 @@ static inline uint16x8_t neon_halves(uint32x4_t low, uint32x4_t high)
 }
 
 /* Weights of eight places: bits 25..18 of each. */
-static inline uint16x8_t neon_weights(uint16x8_t halves)
+static inline uint8x8_t neon_weights(uint16x8_t halves)
 {
-    return vshrq_n_u16(vshlq_n_u16(halves, 6), 8);
+    return vshrn_n_u16(halves, 2);
 }
 
 /* Store where the points of eight places are, in bytes from the pool's first record. Those of a
@@ -72,23 +72,31 @@ struct neon_posts {
     uint16x8_t sw, se, nw, ne;
 };
 
-/* fx_bilerp_u16_q16 of eight places. */
-static inline uint32x4x2_t neon_bilerp(const struct neon_posts *p, uint16x8_t east,
-                                       uint16x8_t north)
+/* Four posts: sw is 2^16 of the result, less what the other three have of it. */
+static inline uint32x4_t neon_bilerp_4(uint16x4_t sw, uint16x4_t se, uint16x4_t nw, uint16x4_t ne,
+                                       uint16x4_t away, uint16x4_t to_se, uint16x4_t to_nw,
+                                       uint16x4_t to_ne)
 {
-    const uint16x8_t west = vsubq_u16(vdupq_n_u16(256), east);
-    const uint32x4_t south_low = vmlal_u16(vmull_u16(vget_low_u16(p->sw), vget_low_u16(west)),
-                                           vget_low_u16(p->se), vget_low_u16(east));
-    const uint32x4_t north_low = vmlal_u16(vmull_u16(vget_low_u16(p->nw), vget_low_u16(west)),
-                                           vget_low_u16(p->ne), vget_low_u16(east));
-    const uint32x4_t south_high = vmlal_high_u16(vmull_high_u16(p->sw, west), p->se, east);
-    const uint32x4_t north_high = vmlal_high_u16(vmull_high_u16(p->nw, west), p->ne, east);
-    return (uint32x4x2_t){{
-        vmlaq_u32(vshlq_n_u32(south_low, 8), vsubq_u32(north_low, south_low),
-                  vmovl_u16(vget_low_u16(north))),
-        vmlaq_u32(vshlq_n_u32(south_high, 8), vsubq_u32(north_high, south_high),
-                  vmovl_high_u16(north)),
-    }};
+    const uint32x4_t south = vmlal_u16(vmlsl_u16(vshll_n_u16(sw, 16), sw, away), se, to_se);
+    return vmlal_u16(vmlal_u16(south, nw, to_nw), ne, to_ne);
+}
+
+/* fx_bilerp_u16_q16 of eight places, by the weights of their four posts. That of sw, 2^16 where
+ * both others are 0, would not fit in 16 bits; what it lacks does: 65535 at most, 2^16 - 1 * 1.
+ * Weights are below 256, and a product of two of them below 2^16. The sum is modulo 2^32 on its
+ * way, and at most 65535 * 2^16. */
+static inline uint32x4x2_t neon_bilerp(const struct neon_posts *p, uint8x8_t east, uint8x8_t north)
+{
+    const uint16x8_t both = vmull_u8(east, north), north_q16 = vshll_n_u8(north, 8);
+    const uint16x8_t to_se = vsubq_u16(vshll_n_u8(east, 8), both);
+    const uint16x8_t to_nw = vsubq_u16(north_q16, both), away = vaddq_u16(to_se, north_q16);
+    const uint32x4_t south =
+        vmlal_high_u16(vmlsl_high_u16(vshll_high_n_u16(p->sw, 16), p->sw, away), p->se, to_se);
+    return (uint32x4x2_t){
+        {neon_bilerp_4(vget_low_u16(p->sw), vget_low_u16(p->se), vget_low_u16(p->nw),
+                       vget_low_u16(p->ne), vget_low_u16(away), vget_low_u16(to_se),
+                       vget_low_u16(to_nw), vget_low_u16(both)),
+         vmlal_high_u16(vmlal_high_u16(south, p->nw, to_nw), p->ne, both)}};
 }
 
 /* Base plus post, as lm_k_tile_sample takes them from a scale: Arm shifts by what the lowest byte

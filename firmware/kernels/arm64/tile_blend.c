@@ -566,8 +566,7 @@ static inline void neon_read(const struct neon_map *map, struct neon_turn turn,
     __asm__("" : "+r"(scratch));
     for (size_t h = 0; h < 2; h++) {
         const uint32_t *const cell = turn.cell + h * turn.next;
-        const uint32x4x2_t record = {
-            {vshlq_n_u32(vld1q_u32(cell), 2), vshlq_n_u32(vld1q_u32(cell + 4), 2)}};
+        const uint32x4x2_t record = {{vld1q_u32(cell), vld1q_u32(cell + 4)}};
         e[h] = neon_halves(at->east[2 * h], at->east[2 * h + 1]);
         n[h] = neon_halves(at->north[2 * h], at->north[2 * h + 1]);
         neon_store_offsets(scratch->post + LM_LANES * h, record, vshrq_n_u16(n[h], 10),

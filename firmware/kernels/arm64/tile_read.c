@@ -29,8 +29,7 @@ void lm_k_tile_read(const struct lm_tile_point *points, const struct lm_tile_coo
         const uint32x4_t n0 = neon_next(&north_track), n1 = neon_next(&north_track);
         const uint32x4_t e0 = neon_next(&east_track), e1 = neon_next(&east_track);
         const uint16x8_t n = neon_halves(n0, n1), e = neon_halves(e0, e1);
-        const uint32x4x2_t record = {
-            {vshlq_n_u32(vld1q_u32(cell), 2), vshlq_n_u32(vld1q_u32(cell + 4), 2)}};
+        const uint32x4x2_t record = {{vld1q_u32(cell), vld1q_u32(cell + 4)}};
         neon_store_offsets(scratch->offset, record, vshrq_n_u16(n, 10), vshrq_n_u16(e, 10));
         /* In memory, from where two numbers come at a time; the compiler would move one by one. */
         __asm__("" : "+m"(*scratch));

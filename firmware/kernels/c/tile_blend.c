@@ -131,7 +131,7 @@ static inline ALWAYS_INLINE struct lm_ground blend(const struct lm_k_blend *map,
     /* Half a cell to the south-west lies the cell whose middle is next. Weights are 1/128. */
     const uint32_t north_q25 = (north >> 1) + (1u << 24), east_q25 = (east >> 1) + (1u << 24);
     const int32_t row = (int32_t)(north_q25 >> 25) - 1, column = (int32_t)(east_q25 >> 25) - 1;
-    const int32_t at = (int32_t)record + row * LM_TILE_POINTS + column;
+    const int32_t at = lm_k_point_of(record) + row * LM_TILE_POINTS + column;
     const int32_t v = north_q25 >> 18 & 127, u = east_q25 >> 18 & 127;
     /* Cut off, the three add up to 255 at most: together they are 256 - (128 - u) (128 - v) / 64.
      */

@@ -44,11 +44,17 @@ struct lm_ground {
         elevation_m_q14; /* terrain, metres * 16384; up to 8 too low: weights are 1/256 each way */
 };
 
+/* Number of a record's own point: vectors gather by the numbers of words, and fetch by bytes. */
+static inline int32_t lm_k_point_of(uint32_t record)
+{
+    return (int32_t)(record / (uint32_t)sizeof(struct lm_tile_point));
+}
+
 /* One cell of lm_k_tile_read, for those who look at a single place.
  *
  * `points`: the first tile's own south-west point in a pool (lm_tile_origin). `record`: from there
- * to that of the tile in question, counted in points. `scale`: elevation of the tile's base in Q14,
- * a multiple of 256, less the number of bits (4..8) by which a post in Q16 is shifted down to
+ * to that of the tile in question, in bytes below 2^27. `scale`: elevation of the tile's base in
+ * Q14, a multiple of 256, less the number of bits (4..8) by which a post in Q16 is shifted down to
  * metres in Q14.
  *
  * The four posts around the place are blended (fx/lerp.h). The post's part and the base are below
@@ -57,7 +63,7 @@ static inline struct lm_ground lm_k_tile_sample(const struct lm_tile_point *poin
                                                 int32_t scale, uint32_t north, uint32_t east)
 {
     const int32_t row = (int32_t)(north >> 26), column = (int32_t)(east >> 26);
-    const int32_t at = (int32_t)record + row * LM_TILE_POINTS + column;
+    const int32_t at = lm_k_point_of(record) + row * LM_TILE_POINTS + column;
     const uint32_t south_west = fx_load_u32(points + at), south_east = fx_load_u32(points + at + 1);
     const uint32_t north_west = fx_load_u32(points + at + LM_TILE_POINTS);
     const uint32_t north_east = fx_load_u32(points + at + LM_TILE_POINTS + 1);

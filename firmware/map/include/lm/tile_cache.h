@@ -65,7 +65,7 @@ enum { LM_TILE_RETRY_US = 1000000 };
 
 /* Start of a tile's points and elevations, as lm_tile_read needs them: lm_tile_base_of. */
 struct lm_tile_base {
-    uint32_t record; /* from the pool's first point to the tile's, in points */
+    uint32_t record; /* from the pool's first point to the tile's, in bytes */
     int32_t scale;   /* base elevation and shift of the posts */
 };
 
@@ -238,7 +238,7 @@ static inline struct lm_tile_base lm_tile_base_of(const struct lm_tile *pool,
                                                   const struct lm_tile *tile)
 {
     const uint32_t bytes = (uint32_t)((const uint8_t *)tile - (const uint8_t *)pool); /* < 2^27 */
-    return (struct lm_tile_base){.record = bytes / (uint32_t)sizeof(struct lm_tile_point),
+    return (struct lm_tile_base){.record = bytes,
                                  .scale = tile->base_m_q6 * 256 + (tile->post_shift - 8)};
 }
 
