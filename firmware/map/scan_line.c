@@ -230,6 +230,17 @@ static struct lm_quadratic quadratic_in_ancestor(const struct coordinate *w, uin
     return quadratic_of(&up);
 }
 
+static inline void assign_lanes(struct lm_tile_base tile, uint32_t *cell, int32_t *elevation,
+                                int lanes)
+{
+    for (int lane = 0; lane < lanes; lane++) {
+        cell[lane] = tile.record;
+    }
+    for (int lane = 0; lane < lanes; lane++) {
+        elevation[lane] = tile.scale;
+    }
+}
+
 /* Assign a tile to the cells of a run, and to those behind it up to a whole number of LM_LANES.
  * Pass one of lm/tile_read.h. */
 static inline void assign_tile(struct lm_tile_base tile, uint32_t first, uint32_t end,
@@ -237,20 +248,19 @@ static inline void assign_tile(struct lm_tile_base tile, uint32_t first, uint32_
 {
     uint32_t *cell = line->cell + first;
     int32_t *elevation = line->elevation_m_q14 + first;
-    const uint32_t *const behind = line->cell + end;
-    do {
-        for (int lane = 0; lane < LM_LANES; lane++) {
-            cell[lane] = tile.record;
-        }
-        for (int lane = 0; lane < LM_LANES; lane++) {
-            elevation[lane] = tile.scale;
-        }
-        cell += LM_LANES;
-        elevation += LM_LANES;
-        /* Keep two pointers: the compiler would replace them by one offset, which costs more before
-         * the loop and in it. */
-        __asm__("" : "+r"(cell), "+r"(elevation));
-    } while (cell < behind);
+    int32_t more = (int32_t)(end - first) - LM_LANES; /* behind the next LM_LANES */
+    while (more > 0) {
+        assign_lanes(tile, cell, elevation, 2 * LM_LANES);
+        cell += 2 * LM_LANES;
+        elevation += 2 * LM_LANES;
+        more -= 2 * LM_LANES;
+        /* Keep two pointers and what is left: the compiler would replace them by one offset and its
+         * end, which costs more before the loop. */
+        __asm__("" : "+r"(cell), "+r"(elevation), "+r"(more));
+    }
+    if (more > -LM_LANES) {
+        assign_lanes(tile, cell, elevation, LM_LANES);
+    }
 }
 
 /* Read a run whose tile was not found by lm_tile_cache_peek: from the tile, an ancestor, or

@@ -17,13 +17,13 @@ void lm_k_grain_floor(const struct lm_k_curve *curve, const int8_t *grain_q5, in
                       const int16_t *level_q8, int16_t *restrict noisy_q8, uint32_t cells)
 {
     const struct neon_curve lines = neon_curve_of(curve);
-    const uint8x16x4_t lows = vld1q_u8_x4(fx_table_db_sum_lines[0]);
-    const uint8x16x4_t highs = vld1q_u8_x4(fx_table_db_sum_lines[1]);
-    const uint8x16x4_t falls = vld1q_u8_x4(fx_table_db_sum_lines[2]);
+    const struct neon_sum_rows rows = neon_sum_rows();
     const int16x8_t floor = neon_held_8(vdupq_n_s32(floor_q8), vdupq_n_s32(floor_q8));
     for (size_t i = 0; i < cells; i += NEON_CELLS) {
-        const int16x8x2_t sum = neon_db_q8_sum_16(lows, highs, falls, vld1q_s16_x2(level_q8 + i),
-                                                  (int16x8x2_t){{floor, floor}});
+        const int16x8x2_t level = vld1q_s16_x2(level_q8 + i), other = {{floor, floor}};
+        const uint16x8x2_t more_q13 =
+            neon_look_up_more_q13(&rows, neon_db_sum_of_levels(level, other));
+        const int16x8x2_t sum = neon_db_sum_raised(level, other, more_q13);
         const int16x8x2_t db_q8 = neon_curve_db_q8(&lines, vld1q_s8(grain_q5 + i));
         vst1q_s16_x2(noisy_q8 + i, neon_add_16(sum, db_q8));
     }

@@ -20,9 +20,11 @@ static const uint8_t shares_db_q8[2][16] = {
     {255, 183, 107, 24, 191, 94, 244, 127, 252, 104, 189, 242, 250, 186, 247, 244},
     {255, 255, 255, 255, 254, 254, 253, 253, 252, 252, 251, 250, 249, 248, 246, 243}};
 
-/* Tables that stay in registers. Those of sums are loaded each time: they take twelve. */
+/* Tables that stay in registers. Those of sums are loaded each time: they take twelve. Where their
+ * rows are stays in registers, too. */
 struct tables {
     uint8x16_t share[2], height[2];
+    struct neon_sum_rows sums;
 };
 
 /* The line as it is laid over. */
@@ -45,16 +47,6 @@ struct pass {
     uint8x16_t place_16ths; /* 0..32; anything above for those that take no part */
 };
 
-/* Look up sixteen bytes in the next row of a table. The compiler must not load it before `after` is
- * known: it has no registers for several rows, and would copy them to the stack and back. */
-static inline uint8x16_t look_up(const uint8_t **row, uint8x16_t after, uint8x16_t place)
-{
-    __asm__("" : "+r"(*row) : "w"(after));
-    const uint8x16x4_t entries = vld1q_u8_x4(*row);
-    *row += 64;
-    return vqtbl4q_u8(entries, place);
-}
-
 /* Of levels what lies above LM_LEVEL_SHADOW, or of that the levels. */
 static inline uint16x8_t from_shadow(uint16x8_t x)
 {
@@ -74,15 +66,11 @@ static inline void store_16(int16_t *to, uint16x8x2_t x)
 }
 
 /* fx_db_q8_sum_vec of sixteen. */
-static inline uint16x8x2_t sum_16(uint16x8x2_t a, uint16x8x2_t b)
+static inline uint16x8x2_t sum_16(const struct tables *t, uint16x8x2_t a, uint16x8x2_t b)
 {
     const struct neon_db_sum at =
         neon_db_sum_of_16(vabdq_u16(a.val[0], b.val[0]), vabdq_u16(a.val[1], b.val[1]));
-    const uint8_t *row = fx_table_db_sum_lines[0];
-    const uint8x16_t low = look_up(&row, at.line, at.line);
-    const uint8x16_t high = look_up(&row, low, at.line);
-    const uint8x16_t fall = look_up(&row, high, at.line);
-    const uint16x8x2_t more_q13 = neon_db_sum_more_q13(low, high, fall, at.place);
+    const uint16x8x2_t more_q13 = neon_look_up_more_q13(&t->sums, at);
     return (uint16x8x2_t){{vsraq_n_u16(vmaxq_u16(a.val[0], b.val[0]), more_q13.val[0], 5),
                            vsraq_n_u16(vmaxq_u16(a.val[1], b.val[1]), more_q13.val[1], 5)}};
 }
@@ -106,6 +94,7 @@ static inline int16x8x2_t displace(const struct tables *t, const struct lm_k_lay
     int32x4x4_t terrain = vld1q_s32_x4(s->elevation_m_q14);
     s->cell += GROUP;
     s->elevation_m_q14 += GROUP;
+    __asm__("" : "+r"(s->cell), "+r"(s->elevation_m_q14)); /* loads move them on, no sums */
     for (size_t k = 0; k < 4; k++) {
         terrain.val[k] = vqrdmulhq_n_s32(vsubq_s32(reference, terrain.val[k]), l->sixteenths_q31);
     }
@@ -186,9 +175,9 @@ static inline uint16_t share_at(const int16_t *from)
     return (uint16_t)(*from ^ LM_LEVEL_SHADOW);
 }
 
-static inline void put_16(int16_t *to, uint16x8x2_t sum, bool is_new)
+static inline void put_16(const struct tables *t, int16_t *to, uint16x8x2_t sum, bool is_new)
 {
-    store_16(to, is_new ? sum : sum_16(sum, load_16(to)));
+    store_16(to, is_new ? sum : sum_16(t, sum, load_16(to)));
 }
 
 /* Add a group of which no cell moves by more than one cell beyond the first. */
@@ -200,9 +189,9 @@ static inline void add_two(struct laid *laid, const struct tables *t, const stru
     const uint16x8_t before = vdupq_n_u16(is_new ? share_at(to) : 0);
     const uint16x8x2_t next = share(t, below, vabdq_u8(p->place_16ths, vdupq_n_u8(16)));
     const uint16x8x2_t own = share(t, below, p->place_16ths);
-    put_16(to, sum_16(own, from_before(before, next, 1)), is_new);
+    put_16(t, to, sum_16(t, own, from_before(before, next, 1)), is_new);
     put(to + GROUP, vgetq_lane_u16(next.val[1], 7), is_new);
-    laid->filled = fx_max_i32(laid->filled, first + 1 + GROUP);
+    laid->filled = is_new ? first + 1 + GROUP : fx_max_i32(laid->filled, first + 1 + GROUP);
 }
 
 static inline void add_three(struct laid *laid, const struct tables *t, const struct pass *p,
@@ -217,8 +206,8 @@ static inline void add_three(struct laid *laid, const struct tables *t, const st
     const uint16x8x2_t next = share(t, below, vabdq_u8(p->place_16ths, vdupq_n_u8(16)));
     const uint16x8x2_t second = share(t, below, vsubq_u8(vdupq_n_u8(32), p->place_16ths));
     const uint16x8x2_t own = share(t, below, p->place_16ths);
-    const uint16x8x2_t sum = sum_16(own, from_before(before, next, 1));
-    put_16(to, sum_16(sum, from_before(before_second, second, 2)), is_new);
+    const uint16x8x2_t sum = sum_16(t, own, from_before(before, next, 1));
+    put_16(t, to, sum_16(t, sum, from_before(before_second, second, 2)), is_new);
     put(to + GROUP,
         (uint32_t)fx_db_q8_sum_vec(vgetq_lane_u16(next.val[1], 7),
                                    vgetq_lane_u16(second.val[1], 6)),
@@ -252,13 +241,15 @@ static inline struct tables load_tables(const uint8_t (*height_sixteenths)[LM_K_
 {
     struct tables t = {.share = {vld1q_u8(shares_db_q8[0]), vld1q_u8(shares_db_q8[1])},
                        .height = {vld1q_u8(height_sixteenths[0]), vld1q_u8(height_sixteenths[1])}};
+    t.sums = neon_sum_rows();
     __asm__("" : "+w"(t.share[0]), "+w"(t.share[1]), "+w"(t.height[0]), "+w"(t.height[1]));
     return t;
 }
 
+/* The number, widened once: the compiler would keep it with and without its sign. */
 static inline int32_t least_of(int16x8x2_t away_16ths)
 {
-    return vminvq_s16(vminq_s16(away_16ths.val[0], away_16ths.val[1]));
+    return apart(vminvq_s16(vminq_s16(away_16ths.val[0], away_16ths.val[1])));
 }
 
 /* Whether a pass begins where the line is kept, of that many cells. */
@@ -272,7 +263,8 @@ static inline bool is_kept(const struct pass *p, uint32_t displayed)
 static inline int32_t lay_in_passes(struct laid laid, int32_t number, int16x8x2_t away_16ths,
                                     uint16x8x2_t below, uint32_t displayed)
 {
-    const struct tables t = {.share = {vld1q_u8(shares_db_q8[0]), vld1q_u8(shares_db_q8[1])}};
+    struct tables t = {.share = {vld1q_u8(shares_db_q8[0]), vld1q_u8(shares_db_q8[1])}};
+    t.sums = neon_sum_rows();
     struct pass p;
     bool is_last = false;
     while (!is_last) {
@@ -296,6 +288,8 @@ static inline void lay_group(struct laid *laid, const struct tables *t,
 {
     const int16x8_t most = vdupq_n_s16(LM_K_LAYOVER_MOST_DB_Q8);
     const int16x8x2_t level_db_q8 = vld1q_s16_x2(s->level_db_q8);
+    s->level_db_q8 += GROUP;
+    __asm__("" : "+r"(s->level_db_q8));
     const int16x8_t dark = vdupq_n_s16(LM_LEVEL_SHADOW / 2);
     const uint16x8_t is_dark[2] = {vcleq_s16(level_db_q8.val[0], dark),
                                    vcleq_s16(level_db_q8.val[1], dark)};
@@ -303,7 +297,6 @@ static inline void lay_group(struct laid *laid, const struct tables *t,
     const int32_t least = least_of(away_16ths);
     uint16x8x2_t below;
     struct pass p;
-    s->level_db_q8 += GROUP;
     if (least == NOWHERE) {
         return;
     }

@@ -150,14 +150,15 @@ static inline uint8x16_t neon_edges(const struct neon_class_lut *l, struct neon_
 static inline struct neon_levels neon_shown(uint8x16_t edge_db_q3, uint16x8x2_t cells,
                                             uint16x8x2_t more_q8, uint32x4x4_t rise)
 {
-    uint16x8x2_t own_q8 = {
-        {vshll_n_u8(vget_low_u8(edge_db_q3), 5), vshll_high_n_u8(edge_db_q3, 5)}};
+    const uint8x16_t gamma =
+        vuzp2q_u8(vreinterpretq_u8_u16(cells.val[0]), vreinterpretq_u8_u16(cells.val[1]));
+    const uint8x16_t step = vdupq_n_u8(LM_GAMMA_CODE_STEP_DB_Q8), eighth = vdupq_n_u8(32);
     /* The upper byte times LM_GAMMA_CODE_STEP_DB_Q8. With LM_EDGE_MAX_DB_Q8 and the rise's decibels
      * it takes 16 bits: 32640 + 8160 + 24659. */
-    for (size_t n = 0; n < 2; n++) {
-        own_q8.val[n] = vsraq_n_u16(vaddq_u16(own_q8.val[n], more_q8.val[n]),
-                                    vandq_u16(cells.val[n], vdupq_n_u16(0xFF00)), 1);
-    }
+    const uint16x8x2_t own_q8 = {
+        {vmlal_u8(vmlal_u8(more_q8.val[0], vget_low_u8(gamma), vget_low_u8(step)),
+                  vget_low_u8(edge_db_q3), vget_low_u8(eighth)),
+         vmlal_high_u8(vmlal_high_u8(more_q8.val[1], gamma, step), edge_db_q3, eighth)}};
     return neon_add_db_q8_of_16(own_q8, neon_octaves_of(rise));
 }
 

@@ -171,6 +171,43 @@ static inline uint16x8x2_t neon_db_sum_more_q13(uint8x16_t low, uint8x16_t high,
                            vmlsl_high_u8(vreinterpretq_u16_u8(vzip2q_u8(low, high)), fall, place)}};
 }
 
+/* Where the rows of fx_table_db_sum_lines are, for loops that have no registers for their twelve
+ * vectors and load them each time. */
+struct neon_sum_rows {
+    const uint8_t *at[3];
+};
+
+/* The compiler must not see that they are a constant apart: it would work them out each time. */
+static inline struct neon_sum_rows neon_sum_rows(void)
+{
+    struct neon_sum_rows r;
+    for (size_t n = 0; n < 3; n++) {
+        r.at[n] = fx_table_db_sum_lines[n];
+        __asm__("" : "+r"(r.at[n]));
+    }
+    return r;
+}
+
+/* Look up sixteen bytes in a row of a table. The compiler must not load it before `after` is known,
+ * nor leave it loaded: it would copy rows to the stack and back. */
+static inline uint8x16_t neon_look_up(const uint8_t *row, uint8x16_t after, uint8x16_t place)
+{
+    __asm__ volatile("" : : "w"(after) : "memory");
+    uint8x16_t found = vqtbl4q_u8(vld1q_u8_x4(row), place);
+    __asm__ volatile("" : "+w"(found));
+    return found;
+}
+
+/* neon_db_sum_more_q13 of what the rows say. */
+static inline uint16x8x2_t neon_look_up_more_q13(const struct neon_sum_rows *rows,
+                                                 struct neon_db_sum at)
+{
+    const uint8x16_t low = neon_look_up(rows->at[0], at.line, at.line);
+    const uint8x16_t high = neon_look_up(rows->at[1], low, at.line);
+    const uint8x16_t fall = neon_look_up(rows->at[2], high, at.line);
+    return neon_db_sum_more_q13(low, high, fall, at.place);
+}
+
 /* The larger ones, and what the table says that they are raised by. */
 static inline int32x4x4_t neon_db_sum_raise(uint8x16_t low, uint8x16_t high, uint8x16_t fall,
                                             uint8x16_t place, int32x4x4_t a_q8, int32x4x4_t b_q8)
@@ -213,22 +250,34 @@ static inline int16x8_t neon_held_8(int32x4_t low, int32x4_t high)
     return vqmovn_high_s32(vqmovn_s32(low), high);
 }
 
-/* fx_db_q8_sum_vec of sixteen levels of 16 bits, held within them. */
-static inline int16x8x2_t neon_db_q8_sum_16(uint8x16x4_t lows, uint8x16x4_t highs,
-                                            uint8x16x4_t falls, int16x8x2_t a_q8, int16x8x2_t b_q8)
+/* Where the sums of two times sixteen levels of 16 bits meet in the table. */
+static inline struct neon_db_sum neon_db_sum_of_levels(int16x8x2_t a_q8, int16x8x2_t b_q8)
 {
-    const struct neon_db_sum at =
-        neon_db_sum_of_16(vreinterpretq_u16_s16(vabdq_s16(a_q8.val[0], b_q8.val[0])),
-                          vreinterpretq_u16_s16(vabdq_s16(a_q8.val[1], b_q8.val[1])));
-    const uint16x8x2_t more_q13 =
-        neon_db_sum_more_q13(vqtbl4q_u8(lows, at.line), vqtbl4q_u8(highs, at.line),
-                             vqtbl4q_u8(falls, at.line), at.place);
+    return neon_db_sum_of_16(vreinterpretq_u16_s16(vabdq_s16(a_q8.val[0], b_q8.val[0])),
+                             vreinterpretq_u16_s16(vabdq_s16(a_q8.val[1], b_q8.val[1])));
+}
+
+/* The larger ones, raised by what the table says, held within 16 bits. */
+static inline int16x8x2_t neon_db_sum_raised(int16x8x2_t a_q8, int16x8x2_t b_q8,
+                                             uint16x8x2_t more_q13)
+{
     int16x8x2_t sum;
     for (size_t n = 0; n < 2; n++) {
         const int16x8_t more_q8 = vreinterpretq_s16_u16(vshrq_n_u16(more_q13.val[n], 5));
         sum.val[n] = vqaddq_s16(vmaxq_s16(a_q8.val[n], b_q8.val[n]), more_q8);
     }
     return sum;
+}
+
+/* fx_db_q8_sum_vec of sixteen levels of 16 bits, held within them. */
+static inline int16x8x2_t neon_db_q8_sum_16(uint8x16x4_t lows, uint8x16x4_t highs,
+                                            uint8x16x4_t falls, int16x8x2_t a_q8, int16x8x2_t b_q8)
+{
+    const struct neon_db_sum at = neon_db_sum_of_levels(a_q8, b_q8);
+    const uint16x8x2_t more_q13 =
+        neon_db_sum_more_q13(vqtbl4q_u8(lows, at.line), vqtbl4q_u8(highs, at.line),
+                             vqtbl4q_u8(falls, at.line), at.place);
+    return neon_db_sum_raised(a_q8, b_q8, more_q13);
 }
 
 /* Eight numbers, and eight more. */

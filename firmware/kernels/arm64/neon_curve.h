@@ -5,7 +5,8 @@
 #include "lm/kernels_clutter.h"
 #include "neon.h"
 
-/* A curve's lines in registers: lower bytes and upper bytes. */
+/* A curve's lines in registers: lower bytes and upper bytes. Those of numbers from 0 on come first,
+ * so that the upper bits of a number choose its line as they are. */
 struct neon_curve {
     uint8x16_t base[2], rise[2];
 };
@@ -17,8 +18,8 @@ static inline void neon_curve_rows(const int32_t *table, uint8x16_t rows[2])
         vreinterpretq_u8_s16(vmovn_high_s32(vmovn_s32(word.val[0]), word.val[1]));
     const uint8x16_t second =
         vreinterpretq_u8_s16(vmovn_high_s32(vmovn_s32(word.val[2]), word.val[3]));
-    rows[0] = vuzp1q_u8(first, second);
-    rows[1] = vuzp2q_u8(first, second);
+    rows[0] = vuzp1q_u8(second, first);
+    rows[1] = vuzp2q_u8(second, first);
 }
 
 static inline struct neon_curve neon_curve_of(const struct lm_k_curve *curve)
@@ -32,7 +33,7 @@ static inline struct neon_curve neon_curve_of(const struct lm_k_curve *curve)
 /* The speckle of sixteen numbers. A rise times 15 takes 16 bits. */
 static inline int16x8x2_t neon_curve_db_q8(const struct neon_curve *curve, int8x16_t grain_q5)
 {
-    const uint8x16_t c = veorq_u8(vreinterpretq_u8_s8(grain_q5), vdupq_n_u8(0x80));
+    const uint8x16_t c = vreinterpretq_u8_s8(grain_q5);
     const uint8x16_t line = vshrq_n_u8(c, 4), place = vandq_u8(c, vdupq_n_u8(15));
     const uint16x8x2_t base = neon_words_of_16(curve->base, line);
     const uint16x8x2_t rise = neon_words_of_16(curve->rise, line);
