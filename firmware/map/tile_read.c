@@ -12,9 +12,13 @@ struct lm_ground lm_tile_ground(const struct lm_tile *tile, uint32_t north, uint
  * Returns how many groups there are. */
 static uint32_t fill_groups(uint32_t first, uint32_t end, struct lm_scan_line *line)
 {
+    uint32_t *const cell = line->cell + end;
+    int32_t *const elevation_m_q14 = line->elevation_m_q14 + end;
     for (int lane = 0; lane < LM_LANES; lane++) {
-        line->cell[end + (uint32_t)lane] = 0;
-        line->elevation_m_q14[end + (uint32_t)lane] = 0;
+        cell[lane] = 0;
+    }
+    for (int lane = 0; lane < LM_LANES; lane++) {
+        elevation_m_q14[lane] = 0;
     }
     return (end - first + LM_LANES - 1) / LM_LANES;
 }

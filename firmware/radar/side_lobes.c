@@ -5,6 +5,7 @@
 #include "fx/bits.h"
 #include "fx/hash.h"
 #include "fx/log.h"
+#include "fx/mem.h"
 #include "fx/sat.h"
 #include "lm/kernels_radar.h"
 #include "lm/lanes.h"
@@ -16,7 +17,7 @@ _Static_assert(2 * (int)LM_K_BESIDE == LM_RESPONSE_REACH, "the kernel looks as f
 
 /* The main lobe reaches to 1.66 cells: cells beside a point's own are in it, and so is a part of
  * those behind them. Its power is in the cell's level already. */
-enum { BESIDE = LM_RESPONSE_REACH / 2, FIRST_NULL_CELLS_Q8 = 426, NO_LOBE_DB_Q8 = INT16_MIN };
+enum { FIRST_NULL_CELLS_Q8 = 426, NO_LOBE_DB_Q8 = INT16_MIN };
 
 /* Places lie evenly in the cell: odd sixteenths from its middle. */
 static int32_t off_cells_q8(int32_t place)
@@ -71,25 +72,6 @@ struct search {
     int16_t least_db_q8;
 };
 
-/* What lm_k_stand_out says of a cell, near an end of the line: cells beyond it are none. */
-static bool stands_out(const struct search *of, uint32_t cell)
-{
-    const int16_t *const level_db_q8 = of->level_db_q8;
-    const uint32_t first = cell > BESIDE ? cell - BESIDE : 0;
-    const uint32_t last = fx_min_u32(cell + BESIDE, of->cells - 1);
-    const int32_t most_db_q8 = level_db_q8[cell] - of->s->config->above_db_q8;
-    if (level_db_q8[cell] < of->least_db_q8 || level_db_q8[first] > most_db_q8 ||
-        level_db_q8[last] > most_db_q8) {
-        return false;
-    }
-    for (uint32_t i = first; i <= last; i++) {
-        if (level_db_q8[i] > level_db_q8[cell]) {
-            return false;
-        }
-    }
-    return true;
-}
-
 /* True if a strong cell comes before a cell: it is stronger, or as strong and nearer. */
 static inline bool is_before(const struct lm_strong_cell *p, uint32_t cell, int32_t level_db_q8)
 {
@@ -129,17 +111,33 @@ static __attribute__((noinline)) void consider(struct search *of, uint32_t cell)
     }
 }
 
+/* Cells of a group at an end of the line that stand out. Beyond it the last cell is repeated: what
+ * is as high as a cell changes nothing, and the cell itself stands out of none. */
+static uint32_t cells_at_end(const struct search *of, uint32_t first)
+{
+    int16_t level_db_q8[LM_K_BESIDE + LM_K_HIGHEST_CELLS + LM_K_BESIDE];
+    const uint32_t lead = first == 0 ? LM_K_BESIDE : 0, from = first + lead - LM_K_BESIDE;
+    const uint32_t room = LM_K_BESIDE + LM_K_HIGHEST_CELLS + LM_K_BESIDE - lead;
+    const uint32_t count = fx_min_u32(room, of->cells - from);
+    for (uint32_t k = 0; k < lead; k++) {
+        level_db_q8[k] = of->level_db_q8[0];
+    }
+    memcpy(level_db_q8 + lead, of->level_db_q8 + from, count * sizeof *level_db_q8);
+    for (uint32_t k = count; k < room; k++) {
+        level_db_q8[lead + k] = of->level_db_q8[of->cells - 1];
+    }
+    const uint32_t beyond = LM_K_HIGHEST_CELLS - fx_min_u32(LM_K_HIGHEST_CELLS, of->cells - first);
+    return lm_k_stand_out(level_db_q8 + LM_K_BESIDE, of->least_db_q8, of->s->config->above_db_q8) &
+           (((1u << LM_K_HIGHEST_CELLS) - 1) >> beyond);
+}
+
 /* Cells of a group that stand out, bit by bit. */
 static inline uint32_t cells_of(const struct search *of, uint32_t first)
 {
     if (first >= LM_K_BESIDE && first + LM_K_HIGHEST_CELLS + LM_K_BESIDE <= of->cells) {
         return lm_k_stand_out(of->level_db_q8 + first, of->least_db_q8, of->s->config->above_db_q8);
     }
-    uint32_t mask = 0;
-    for (uint32_t k = 0; k < fx_min_u32(LM_K_HIGHEST_CELLS, of->cells - first); k++) {
-        mask |= (uint32_t)stands_out(of, first + k) << k;
-    }
-    return mask;
+    return cells_at_end(of, first);
 }
 
 /* Search a group of cells. */

@@ -85,7 +85,8 @@ static inline size_t neon_next_block(size_t i, uint32_t cells)
 /* Signals of sixteen bins, biased: none is the least of 16 bits. */
 static inline int16x8x2_t neon_signals_of_16(uint32x4x4_t power)
 {
-    const uint16x8_t unit = vdupq_n_u16((uint16_t)(LM_K_DETECT_BIAS_DB_Q8 - LM_K_UNIT_Q24_DB_Q8));
+    const uint16x8_t unit = vdupq_n_u16(
+        (uint16_t)(LM_K_DETECT_BIAS_DB_Q8 - LM_K_UNIT_Q24_DB_Q8 + NEON_31_OCTAVES_DB_Q8));
     const struct neon_levels some =
         neon_add_db_q8_of_16((uint16x8x2_t){{unit, unit}}, neon_octaves_of(power));
     int16x8x2_t signal;

@@ -17,9 +17,10 @@ _Static_assert(LM_CELLS_MAX % NEON_CELLS == 0, "a whole number of turns fits in 
 _Static_assert(LM_K_CODES == 16, "a vector looks up all codes at once");
 
 /* Heights of the codes and gains of the classes, lower bytes and upper bytes; edges of the marks,
- * marks of the classes; where a cell's neighbour before it stands. */
+ * marks of the classes; where a cell's neighbour before it stands;
+ * steps of the reflectivity and of edges. */
 struct neon_class_lut {
-    uint8x16_t height_dm[2], gain_db_q8[2], edge_db_q3, mark, one_before;
+    uint8x16_t height_dm[2], gain_db_q8[2], edge_db_q3, mark, one_before, step, eighth;
 };
 
 /* What a turn takes over from the one before it: its last four horizons, its marks; and marks of
@@ -58,7 +59,10 @@ static inline struct neon_class_lut neon_class_lut_of(const struct lm_k_lit_line
     l.edge_db_q3 = vsetq_lane_u8(line->edge_trees_db_q3, l.edge_db_q3, LM_K_TREES);
     l.mark = vld1q_u8(line->mark_of_class);
     l.one_before = vld1q_u8(one_before);
-    __asm__("" : "+w"(l.one_before)); /* else it is loaded with its address each turn */
+    l.step = vdupq_n_u8(LM_GAMMA_CODE_STEP_DB_Q8);
+    l.eighth = vdupq_n_u8(32);
+    /* Else one is loaded with its address each turn, and the others set, once for each half. */
+    __asm__("" : "+w"(l.one_before), "+w"(l.step), "+w"(l.eighth));
     return l;
 }
 
@@ -147,18 +151,18 @@ static inline uint8x16_t neon_edges(const struct neon_class_lut *l, struct neon_
 
 /* What the cells show but for gain: edge, reflectivity and the horizon's rise. `more_q8` is that of
  * the cells' upper halves, which may be negative and wraps. */
-static inline struct neon_levels neon_shown(uint8x16_t edge_db_q3, uint16x8x2_t cells,
-                                            uint16x8x2_t more_q8, uint32x4x4_t rise)
+static inline struct neon_levels neon_shown(const struct neon_class_lut *l, uint8x16_t edge_db_q3,
+                                            uint16x8x2_t cells, uint16x8x2_t more_q8,
+                                            uint32x4x4_t rise)
 {
     const uint8x16_t gamma =
         vuzp2q_u8(vreinterpretq_u8_u16(cells.val[0]), vreinterpretq_u8_u16(cells.val[1]));
-    const uint8x16_t step = vdupq_n_u8(LM_GAMMA_CODE_STEP_DB_Q8), eighth = vdupq_n_u8(32);
     /* The upper byte times LM_GAMMA_CODE_STEP_DB_Q8. With LM_EDGE_MAX_DB_Q8 and the rise's decibels
      * it takes 16 bits: 32640 + 8160 + 24659. */
     const uint16x8x2_t own_q8 = {
-        {vmlal_u8(vmlal_u8(more_q8.val[0], vget_low_u8(gamma), vget_low_u8(step)),
-                  vget_low_u8(edge_db_q3), vget_low_u8(eighth)),
-         vmlal_high_u8(vmlal_high_u8(more_q8.val[1], gamma, step), edge_db_q3, eighth)}};
+        {vmlal_u8(vmlal_u8(more_q8.val[0], vget_low_u8(gamma), vget_low_u8(l->step)),
+                  vget_low_u8(edge_db_q3), vget_low_u8(l->eighth)),
+         vmlal_high_u8(vmlal_high_u8(more_q8.val[1], gamma, l->step), edge_db_q3, l->eighth)}};
     return neon_add_db_q8_of_16(own_q8, neon_octaves_of(rise));
 }
 
@@ -179,8 +183,8 @@ static inline void neon_store_levels(struct neon_place *at, struct neon_levels s
     for (size_t n = 0; n < 2; n++) {
         const int16x8_t gain_q8 =
             vqaddq_s16(gain_db_q8.val[n], vreinterpretq_s16_u16(class_gain_db_q8.val[n]));
-        const int16x8_t shown_q8 =
-            vreinterpretq_s16_u16(veorq_u16(shown.level_db_q8.val[n], vdupq_n_u16(0x8000)));
+        const int16x8_t shown_q8 = vreinterpretq_s16_u16(
+            vaddq_u16(shown.level_db_q8.val[n], vdupq_n_u16(0x8000 + NEON_31_OCTAVES_DB_Q8)));
         level_q8[n] = vbslq_s16(shown.is_none[n], vdupq_n_s16(LM_LEVEL_SHADOW),
                                 vqaddq_s16(shown_q8, gain_q8));
     }
@@ -206,7 +210,7 @@ static inline __attribute__((always_inline)) void neon_cells(const struct neon_c
     const uint8x16_t class_index = vshrq_n_u8(lower, 4);
     const uint8x16_t edge_db_q3 = neon_edges(l, b, hidden->bytes, class_index, &left);
     vst1q_u8(at->behind_shore, left);
-    neon_store_levels(at, neon_shown(edge_db_q3, cells, neon_upper_halves(words), rise),
+    neon_store_levels(at, neon_shown(l, edge_db_q3, cells, neon_upper_halves(words), rise),
                       neon_words_of_16(l->gain_db_q8, class_index));
     at->cell += NEON_CELLS;
     at->elevation_m_q14 += NEON_CELLS;
@@ -292,7 +296,7 @@ static inline void neon_shores(const struct lm_k_lit_line *line, const uint8_t *
         const uint8x16x2_t left = vld1q_u8_x2(at);
         const uint8x16_t some = vshlq_n_u8(vorrq_u8(left.val[0], left.val[1]), 7);
         at += LM_K_SHORE_STRETCH;
-        if (vmaxvq_u8(some) != 0) {
+        if (vmaxvq_u32(vreinterpretq_u32_u8(some)) != 0) {
             const uint32_t behind = (uint32_t)(at - behind_shore);
             for (uint32_t i = behind - LM_K_SHORE_STRETCH; i < behind; i += NEON_CELLS) {
                 const uint64x2_t eights = vreinterpretq_u64_u8(

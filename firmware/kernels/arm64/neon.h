@@ -112,26 +112,43 @@ static inline struct neon_octaves neon_octaves_of(uint32x4x4_t power)
     return o;
 }
 
-/* The same of sixteen, where all fits in 16 bits: the decibels take 24659. An octave's fraction of
- * a step is added before it is cut off, whole steps are behind. */
+/* Steps of 31 octaves. */
+enum { NEON_31_OCTAVES_DB_Q8 = 31 * (FX_DB_PER_OCTAVE_Q13 / 32) };
+
+/* The first two rows of fx_table_db_lines, whose numbers are below 2^15, and fractions of a step of
+ * 31 octaves, below 2^10. */
+static inline void neon_set_octaves(uint8x16_t base[2])
+{
+    const uint8x16_t low = vld1q_u8(fx_table_db_lines[0]), high = vld1q_u8(fx_table_db_lines[1]);
+    const uint16x8_t more_q13 = vdupq_n_u16(31 * (FX_DB_PER_OCTAVE_Q13 % 32));
+    const uint8x16_t first =
+        vreinterpretq_u8_u16(vaddq_u16(vreinterpretq_u16_u8(vzip1q_u8(low, high)), more_q13));
+    const uint8x16_t second =
+        vreinterpretq_u8_u16(vaddq_u16(vreinterpretq_u16_u8(vzip2q_u8(low, high)), more_q13));
+    base[0] = vuzp1q_u8(first, second);
+    base[1] = vuzp2q_u8(first, second);
+}
+
+/* The same of sixteen, less NEON_31_OCTAVES_DB_Q8, where all fits in 16 bits: the decibels take
+ * 24659. Fractions of a step are taken away before they are cut off, and are not more than there
+ * are, 32 octaves aside; whole steps are behind. */
 static inline struct neon_levels neon_add_db_q8_of_16(uint16x8x2_t level_db_q8,
                                                       struct neon_octaves power)
 {
     struct neon_levels sum;
     const uint8x16_t mantissa = vshrn_high_n_u16(vshrn_n_u16(power.top[0], 7), power.top[1], 7);
     const uint8x16_t line = vshrq_n_u8(mantissa, 4);
-    const uint8x16_t base[2] = {vqtbl1q_u8(vld1q_u8(fx_table_db_lines[0]), line),
-                                vqtbl1q_u8(vld1q_u8(fx_table_db_lines[1]), line)};
+    uint8x16_t rows[2];
+    neon_set_octaves(rows);
+    const uint16x8x2_t base = neon_words_of_16(rows, line);
     const uint8x16_t slope = vqtbl1q_u8(vld1q_u8(fx_table_db_lines[2]), line);
-    const uint16x8_t db_q13[2] = {
-        vmlal_u8(vreinterpretq_u16_u8(vzip1q_u8(base[0], base[1])), vget_low_u8(slope),
-                 vget_low_u8(mantissa)),
-        vmlal_high_u8(vreinterpretq_u16_u8(vzip2q_u8(base[0], base[1])), slope, mantissa)};
+    const uint16x8_t db_q13[2] = {vmlal_u8(base.val[0], vget_low_u8(slope), vget_low_u8(mantissa)),
+                                  vmlal_high_u8(base.val[1], slope, mantissa)};
     for (size_t n = 0; n < 2; n++) {
-        const uint16x8_t octave = veorq_u16(power.zeros[n], vdupq_n_u16(31));
-        const uint16x8_t fine_q13 = vmlaq_n_u16(db_q13[n], octave, FX_DB_PER_OCTAVE_Q13 % 32);
-        sum.level_db_q8.val[n] = vmlaq_n_u16(vsraq_n_u16(level_db_q8.val[n], fine_q13, 5), octave,
-                                             FX_DB_PER_OCTAVE_Q13 / 32);
+        const uint16x8_t fine_q13 =
+            vmlsq_n_u16(db_q13[n], power.zeros[n], FX_DB_PER_OCTAVE_Q13 % 32);
+        sum.level_db_q8.val[n] = vmlsq_n_u16(vsraq_n_u16(level_db_q8.val[n], fine_q13, 5),
+                                             power.zeros[n], FX_DB_PER_OCTAVE_Q13 / 32);
         sum.is_none[n] = vceqq_u16(power.zeros[n], vdupq_n_u16(32));
     }
     return sum;

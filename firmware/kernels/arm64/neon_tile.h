@@ -77,8 +77,8 @@ static inline uint32x4_t neon_bilerp_4(uint16x4_t sw, uint16x4_t se, uint16x4_t 
                                        uint16x4_t away, uint16x4_t to_se, uint16x4_t to_nw,
                                        uint16x4_t to_ne)
 {
-    const uint32x4_t south = vmlal_u16(vmlsl_u16(vshll_n_u16(sw, 16), sw, away), se, to_se);
-    return vmlal_u16(vmlal_u16(south, nw, to_nw), ne, to_ne);
+    const uint32x4_t south = vmlal_u16(vshll_n_u16(sw, 16), se, to_se);
+    return vmlsl_u16(vmlal_u16(vmlal_u16(south, nw, to_nw), ne, to_ne), sw, away);
 }
 
 /* fx_bilerp_u16_q16 of eight places, by the weights of their four posts. That of sw, 2^16 where
@@ -90,13 +90,13 @@ static inline uint32x4x2_t neon_bilerp(const struct neon_posts *p, uint8x8_t eas
     const uint16x8_t both = vmull_u8(east, north), north_q16 = vshll_n_u8(north, 8);
     const uint16x8_t to_se = vsubq_u16(vshll_n_u8(east, 8), both);
     const uint16x8_t to_nw = vsubq_u16(north_q16, both), away = vaddq_u16(to_se, north_q16);
-    const uint32x4_t south =
-        vmlal_high_u16(vmlsl_high_u16(vshll_high_n_u16(p->sw, 16), p->sw, away), p->se, to_se);
-    return (uint32x4x2_t){
-        {neon_bilerp_4(vget_low_u16(p->sw), vget_low_u16(p->se), vget_low_u16(p->nw),
-                       vget_low_u16(p->ne), vget_low_u16(away), vget_low_u16(to_se),
-                       vget_low_u16(to_nw), vget_low_u16(both)),
-         vmlal_high_u16(vmlal_high_u16(south, p->nw, to_nw), p->ne, both)}};
+    const uint32x4_t low = neon_bilerp_4(
+        vget_low_u16(p->sw), vget_low_u16(p->se), vget_low_u16(p->nw), vget_low_u16(p->ne),
+        vget_low_u16(away), vget_low_u16(to_se), vget_low_u16(to_nw), vget_low_u16(both));
+    uint32x4_t high = vmlal_high_u16(vshll_high_n_u16(p->sw, 16), p->se, to_se);
+    __asm__("" : "+w"(high)); /* gcc 12 would move it to another register */
+    high = vmlal_high_u16(vmlal_high_u16(high, p->nw, to_nw), p->ne, both);
+    return (uint32x4x2_t){{low, vmlsl_high_u16(high, p->sw, away)}};
 }
 
 /* Base plus post, as lm_k_tile_sample takes them from a scale: Arm shifts by what the lowest byte
