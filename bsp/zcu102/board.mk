@@ -20,7 +20,7 @@ OPT_core := -O3
 # Where it pays for its bytes: what runs for every cell, pixel or byte of a tile.
 UNROLLED := $(addprefix firmware/,display/composer map/tile_unpack radar/antenna radar/beam radar/line \
     radar/receiver targets/target_line \
-    $(addprefix kernels/arm64/,beam grain layover levels noise bins))
+    $(addprefix kernels/arm64/,beam grain layover noise bins))
 OPT_rest := -Os # of what has no such loops
 OPT_board := $(OPT_rest) -mgeneral-regs-only -mstrict-align
 
