@@ -143,12 +143,14 @@ static int climb_to(struct verify *v, struct rung *made)
     struct rung *below[4] = {NULL, NULL, NULL, NULL};
     int result = 0;
     image_cells_decode(t, made->ground.cells);
-    image_ground_init(&made->ground, t);
     for (int i = 0; i < 4 && result == 0 && t->lod > 0; i++) {
         const uint32_t row = 2 * t->row + (uint32_t)(i / 2),
                        column = 2 * t->column + (uint32_t)(i % 2);
         result = climb_entry(v, lm_db_entry(&v->image->db, (uint8_t)(t->lod - 1), row, column),
                              &below[i]);
+    }
+    if (!below[0] || !below[1] || !below[2] || !below[3]) { /* else all of it is made of them */
+        image_ground_init(&made->ground, t);
     }
     if (result == 0 && (below[0] || below[1] || below[2] || below[3])) {
         check_below(v, made, below);
