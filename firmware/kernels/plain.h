@@ -26,7 +26,6 @@ extern __typeof__(lm_k_levels_mean) lm_k_levels_mean_c;
 extern __typeof__(lm_k_highest) lm_k_highest_c;
 extern __typeof__(lm_k_stand_out) lm_k_stand_out_c;
 extern __typeof__(lm_k_side_lobes) lm_k_side_lobes_c;
-extern __typeof__(lm_k_side_lobes_across) lm_k_side_lobes_across_c;
 extern __typeof__(lm_k_beam_sum) lm_k_beam_sum_c;
 extern __typeof__(lm_k_add_slope) lm_k_add_slope_c;
 extern __typeof__(lm_k_fade) lm_k_fade_c;

@@ -664,11 +664,9 @@ static void sample_lines(struct lm_sar *s, struct lm_tile_cache *tiles, uint32_t
  * patch these are places of the ring that hold no line. */
 static void add_side_lobes(struct lm_sar *s, uint32_t number)
 {
-    int16_t *around[LM_SIDE_LOBES_CELLS];
-    for (uint32_t k = 0; k < LM_SIDE_LOBES_CELLS; k++) {
-        around[k] = ring_line(s, number + k - LM_RESPONSE_REACH);
-    }
-    lm_side_lobes_add(&s->side_lobes, number, around, s->radar->sar.cells);
+    lm_side_lobes_add(&s->side_lobes, number,
+                      s->ring_rows + (number - LM_RESPONSE_REACH) % LM_SAR_RING,
+                      s->radar->sar.cells);
 }
 
 /* Add side lobes of the ground, and the scatterers, to lines until `end` have them. It is done
@@ -747,4 +745,7 @@ void lm_sar_restart(struct lm_sar *s)
     lm_side_lobes_clear(&s->side_lobes, &s->radar->sar.side_lobes);
     lm_patch_floor_clear(&s->floor);
     lm_target_patch_clear(&s->target_patch);
+    for (uint32_t k = 0; k < sizeof s->ring_rows / sizeof *s->ring_rows; k++) {
+        s->ring_rows[k] = s->ring_db_q8[k % LM_SAR_RING];
+    }
 }

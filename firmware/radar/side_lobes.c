@@ -207,29 +207,29 @@ static inline void add(int16_t *level_db_q8, int32_t side_lobe)
     }
 }
 
-/* Side lobes of a point in its own line. A kernel adds them where the line has all. */
-static inline void add_along(const struct lm_side_lobes *s, const struct lm_strong_cell *p,
-                             int16_t *level_db_q8, int32_t cells)
+/* Side lobes of a point near an end of its line, in that line. */
+static void add_along(const int16_t *side_db_q8, const struct lm_strong_cell *p,
+                      int16_t *level_db_q8, int32_t cells)
 {
-    const int16_t *const side = s->side_db_q8 + p->beyond + LM_RESPONSE_REACH;
     const int32_t first = p->cell - LM_RESPONSE_REACH, last = p->cell + LM_RESPONSE_REACH;
-    if (first >= 0 && last < cells) {
-        lm_k_side_lobes(side, p->level_db_q8, level_db_q8 + p->cell);
-        return;
-    }
     for (int32_t i = fx_max_i32(first, 0); i <= fx_min_i32(last, cells - 1); i++) {
-        add(&level_db_q8[i], p->level_db_q8 + side[i - p->cell]);
+        add(&level_db_q8[i], p->level_db_q8 + side_db_q8[i - p->cell]);
     }
 }
 
+/* The kernel adds those along the line where it has all the cells. */
 void lm_side_lobes_add(const struct lm_side_lobes *s, uint32_t line,
                        int16_t *const around[LM_SIDE_LOBES_CELLS], uint32_t cells)
 {
     const uint32_t slot = line % LM_SIDE_LOBES_LINES;
     const struct lm_strong_cell *p = s->line[slot].strong;
     for (const struct lm_strong_cell *const end = p + s->line[slot].count; p != end; p++) {
-        add_along(s, p, around[LM_RESPONSE_REACH], (int32_t)cells);
-        lm_k_side_lobes_across(s->side_db_q8 + p->right + LM_RESPONSE_REACH, p->level_db_q8, around,
-                               (uint32_t)p->cell);
+        const int16_t *along_db_q8 = s->side_db_q8 + p->beyond + LM_RESPONSE_REACH;
+        if ((uint32_t)p->cell - LM_RESPONSE_REACH >= cells - 2 * LM_RESPONSE_REACH) {
+            add_along(along_db_q8, p, around[LM_RESPONSE_REACH], (int32_t)cells);
+            along_db_q8 = NULL;
+        }
+        lm_k_side_lobes(along_db_q8, s->side_db_q8 + p->right + LM_RESPONSE_REACH, p->level_db_q8,
+                        around, (uint32_t)p->cell);
     }
 }

@@ -568,37 +568,30 @@ static void run_stand_out(const struct input *in, struct output *out, bool is_pl
 enum { LOBES = 2 * LM_K_LOBES_REACH + 1 };
 
 /* Side lobes of 0 to -64 dB. */
-static void draw_response(const struct input *in, int16_t side_db_q8[LOBES])
+static void draw_response(const struct input *in, uint32_t from, int16_t side_db_q8[LOBES])
 {
     for (uint32_t k = 0; k < LOBES; k++) {
-        side_db_q8[k] = (int16_t) - (in->other_db_q8[k] & 0x3FFF);
+        side_db_q8[k] = (int16_t) - (in->other_db_q8[from + k] & 0x3FFF);
     }
 }
 
-/* Of a point near the levels' middle. */
+/* Lines lie one behind the other, in another order than they are named. Near an end of its line a
+ * point has no lobes along it. */
 static void run_side_lobes(const struct input *in, struct output *out, bool is_plain)
 {
-    int16_t side_db_q8[LOBES];
-    draw_response(in, side_db_q8);
-    struct levels levels = levels_of(in->level_db_q8);
-    TWIN(lm_k_side_lobes)
-    (side_db_q8 + LM_K_LOBES_REACH, (int16_t)in->number[1], levels.db_q8 + LM_K_LOBES_REACH);
-    tell_levels(out->line[0], &levels);
-    out->end[0] = out->room = LOBES;
-}
-
-/* The same to lines that lie one behind the other, in another order than they are named. */
-static void run_side_lobes_across(const struct input *in, struct output *out, bool is_plain)
-{
     enum { LINE_CELLS = ROOM / LOBES };
-    int16_t side_db_q8[LOBES], *around[LOBES];
-    draw_response(in, side_db_q8);
+    int16_t along_db_q8[LOBES], across_db_q8[LOBES], *around[LOBES];
+    draw_response(in, 0, along_db_q8);
+    draw_response(in, LOBES, across_db_q8);
     struct levels levels = levels_of(in->level_db_q8);
     for (uint32_t k = 0; k < LOBES; k++) {
         around[k] = levels.db_q8 + (k + in->entry[0]) % LOBES * LINE_CELLS;
     }
-    TWIN(lm_k_side_lobes_across)
-    (side_db_q8 + LM_K_LOBES_REACH, (int16_t)in->number[1], around, in->entry[1] % LINE_CELLS);
+    const uint32_t cell = in->entry[1] % LINE_CELLS;
+    const bool has_all = cell >= LM_K_LOBES_REACH && cell + LM_K_LOBES_REACH < LINE_CELLS;
+    TWIN(lm_k_side_lobes)
+    (has_all ? along_db_q8 + LM_K_LOBES_REACH : NULL, across_db_q8 + LM_K_LOBES_REACH,
+     (int16_t)in->number[1], around, cell);
     tell_levels(out->line[0], &levels);
     out->end[0] = out->room = ROOM;
 }
@@ -727,7 +720,6 @@ static const struct kernel kernels[] = {
     {"lm_k_highest", draw_levels, run_highest},
     {"lm_k_stand_out", draw_peaks, run_stand_out},
     {"lm_k_side_lobes", draw_levels, run_side_lobes},
-    {"lm_k_side_lobes_across", draw_levels, run_side_lobes_across},
     {"lm_k_beam_sum", draw_powers, run_beam_sum},
     {"lm_k_add_slope", draw_slope, run_add_slope},
     {"lm_k_fade", draw_powers, run_fade},

@@ -85,31 +85,39 @@ uint32_t lm_k_stand_out(const int16_t *level_db_q8, int16_t least_db_q8, int16_t
     return vaddv_u8(vget_low_u8(mask)) | (uint32_t)vaddv_u8(vget_high_u8(mask)) << 8;
 }
 
-/* Levels with the side lobes of a point added that count: those before its own, and behind it. */
-static inline int16x8x2_t neon_with_lobes(const int16_t *side_db_q8, int16_t point_db_q8,
-                                          int16x8x2_t level)
+/* A point's side lobes on sixteen levels: eight before its own, and eight behind it. */
+struct neon_lobes {
+    int16x8x2_t level, lobe;
+    struct neon_db_sum at;
+};
+
+static inline struct neon_lobes neon_lobes_of(const int16_t *side_db_q8, int16x8_t point,
+                                              int16x8x2_t level)
 {
-    const int16x8_t point = vdupq_n_s16(point_db_q8), below = vdupq_n_s16(LM_K_LOBES_BELOW_DB_Q8);
-    const int16x8x2_t lobe = {{vqaddq_s16(point, vld1q_s16(side_db_q8 - LM_K_LOBES_REACH)),
-                               vqaddq_s16(point, vld1q_s16(side_db_q8 + 1))}};
-    int16x8x2_t sum = neon_db_q8_sum_16(vld1q_u8_x4(fx_table_db_sum_lines[0]),
-                                        vld1q_u8_x4(fx_table_db_sum_lines[1]),
-                                        vld1q_u8_x4(fx_table_db_sum_lines[2]), level, lobe);
+    struct neon_lobes of = {.level = level,
+                            .lobe = {{vqaddq_s16(point, vld1q_s16(side_db_q8 - LM_K_LOBES_REACH)),
+                                      vqaddq_s16(point, vld1q_s16(side_db_q8 + 1))}}};
+    of.at = neon_db_sum_of_levels(of.level, of.lobe);
+    return of;
+}
+
+/* The levels with those lobes that count. */
+static inline int16x8x2_t neon_with_lobes(const struct neon_lobes *of, uint16x8x2_t more_q13)
+{
+    const int16x8_t below = vdupq_n_s16(LM_K_LOBES_BELOW_DB_Q8);
+    int16x8x2_t sum = neon_db_sum_raised(of->level, of->lobe, more_q13);
     for (size_t n = 0; n < 2; n++) {
-        const uint16x8_t counts = vcgtq_s16(lobe.val[n], vqsubq_s16(level.val[n], below));
-        sum.val[n] = vbslq_s16(counts, sum.val[n], level.val[n]);
+        const uint16x8_t counts = vcgtq_s16(of->lobe.val[n], vqsubq_s16(of->level.val[n], below));
+        sum.val[n] = vbslq_s16(counts, sum.val[n], of->level.val[n]);
     }
     return sum;
 }
 
-void lm_k_side_lobes(const int16_t *side_db_q8, int16_t point_db_q8, int16_t *level_db_q8)
+/* Of a row of the table of sums, what two look up. */
+static inline uint8x16x2_t neon_sums_row(size_t row, uint8x16_t first, uint8x16_t second)
 {
-    _Static_assert(LM_K_LOBES_REACH == 8, "a vector each way");
-    int16_t *const before = level_db_q8 - LM_K_LOBES_REACH, *const behind = level_db_q8 + 1;
-    const int16x8x2_t level = {{vld1q_s16(before), vld1q_s16(behind)}};
-    const int16x8x2_t sum = neon_with_lobes(side_db_q8, point_db_q8, level);
-    vst1q_s16(before, sum.val[0]);
-    vst1q_s16(behind, sum.val[1]);
+    const uint8x16x4_t table = vld1q_u8_x4(fx_table_db_sum_lines[row]);
+    return (uint8x16x2_t){{vqtbl4q_u8(table, first), vqtbl4q_u8(table, second)}};
 }
 
 /* A cell of eight lines. */
@@ -137,12 +145,33 @@ static inline void neon_store_across(int16_t *const *line, uint32_t cell, int16x
     vst1q_lane_s16(line[7] + cell, v, 7);
 }
 
-void lm_k_side_lobes_across(const int16_t *side_db_q8, int16_t point_db_q8, int16_t *const *around,
-                            uint32_t cell)
+void lm_k_side_lobes(const int16_t *along_db_q8, const int16_t *across_db_q8, int16_t point_db_q8,
+                     int16_t *const *around, uint32_t cell)
 {
-    int16_t *const *const behind = around + LM_K_LOBES_REACH + 1;
-    const int16x8x2_t level = {{neon_load_across(around, cell), neon_load_across(behind, cell)}};
-    const int16x8x2_t sum = neon_with_lobes(side_db_q8, point_db_q8, level);
+    _Static_assert(LM_K_LOBES_REACH == 8, "a vector each way");
+    const int16x8_t point = vdupq_n_s16(point_db_q8);
+    int16_t *const *const right = around + LM_K_LOBES_REACH + 1;
+    int16_t *const own = around[LM_K_LOBES_REACH] + cell;
+    const struct neon_lobes across = neon_lobes_of(
+        across_db_q8, point,
+        (int16x8x2_t){{neon_load_across(around, cell), neon_load_across(right, cell)}});
+    struct neon_lobes along = across;
+    if (along_db_q8) {
+        along =
+            neon_lobes_of(along_db_q8, point,
+                          (int16x8x2_t){{vld1q_s16(own - LM_K_LOBES_REACH), vld1q_s16(own + 1)}});
+    }
+    const uint8x16x2_t low = neon_sums_row(0, across.at.line, along.at.line);
+    const uint8x16x2_t high = neon_sums_row(1, across.at.line, along.at.line);
+    const uint8x16x2_t fall = neon_sums_row(2, across.at.line, along.at.line);
+    int16x8x2_t sum = neon_with_lobes(
+        &across, neon_db_sum_more_q13(low.val[0], high.val[0], fall.val[0], across.at.place));
     neon_store_across(around, cell, sum.val[0]);
-    neon_store_across(behind, cell, sum.val[1]);
+    neon_store_across(right, cell, sum.val[1]);
+    if (along_db_q8) {
+        sum = neon_with_lobes(
+            &along, neon_db_sum_more_q13(low.val[1], high.val[1], fall.val[1], along.at.place));
+        vst1q_s16(own - LM_K_LOBES_REACH, sum.val[0]);
+        vst1q_s16(own + 1, sum.val[1]);
+    }
 }

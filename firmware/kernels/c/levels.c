@@ -65,22 +65,17 @@ static inline int16_t with_lobe(int16_t level_db_q8, int16_t point_db_q8, int16_
     return lobe > fx_sat_i16(level_db_q8 - LM_K_LOBES_BELOW_DB_Q8) ? sum : level_db_q8;
 }
 
-void lm_k_side_lobes(const int16_t *restrict side_db_q8, int16_t point_db_q8,
-                     int16_t *restrict level_db_q8)
+void lm_k_side_lobes(const int16_t *along_db_q8, const int16_t *across_db_q8, int16_t point_db_q8,
+                     int16_t *const *around, uint32_t cell)
 {
-    for (int32_t n = 1; n <= LM_K_LOBES_REACH; n++) {
-        level_db_q8[-n] = with_lobe(level_db_q8[-n], point_db_q8, side_db_q8[-n]);
-        level_db_q8[n] = with_lobe(level_db_q8[n], point_db_q8, side_db_q8[n]);
-    }
-}
-
-void lm_k_side_lobes_across(const int16_t *side_db_q8, int16_t point_db_q8, int16_t *const *around,
-                            uint32_t cell)
-{
+    int16_t *const point = around[LM_K_LOBES_REACH] + cell;
     for (int32_t n = -LM_K_LOBES_REACH; n <= LM_K_LOBES_REACH; n++) {
         if (n != 0) {
             int16_t *const at = around[n + LM_K_LOBES_REACH] + cell;
-            *at = with_lobe(*at, point_db_q8, side_db_q8[n]);
+            *at = with_lobe(*at, point_db_q8, across_db_q8[n]);
+        }
+        if (n != 0 && along_db_q8) {
+            point[n] = with_lobe(point[n], point_db_q8, along_db_q8[n]);
         }
     }
 }

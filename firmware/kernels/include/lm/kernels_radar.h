@@ -52,16 +52,14 @@ uint32_t lm_k_stand_out(const int16_t *level_db_q8, int16_t least_db_q8, int16_t
 
 enum { LM_K_LOBES_REACH = 8, LM_K_LOBES_BELOW_DB_Q8 = 25 * 256 };
 
-/* Add a point's side lobes to the LM_K_LOBES_REACH levels before and behind its own, which is at
- * level_db_q8. side_db_q8 is where the point's own entry is of its response, in decibels over the
- * point's. What is LM_K_LOBES_BELOW_DB_Q8 below a level, or more, is not added. Sums and
- * differences are held within 16 bits. Cost: 3 a cell. */
-void lm_k_side_lobes(const int16_t *side_db_q8, int16_t point_db_q8, int16_t *level_db_q8);
-
-/* The same for cell `cell` of the lines beside the point's own: `around` has 2 LM_K_LOBES_REACH + 1
- * lines, of which that in the middle is not touched. Cost: 6 a line. */
-void lm_k_side_lobes_across(const int16_t *side_db_q8, int16_t point_db_q8, int16_t *const *around,
-                            uint32_t cell);
+/* Add a point's side lobes to the LM_K_LOBES_REACH levels before and behind its own, cell `cell` of
+ * its line, and to that cell of the lines on either side. `around` has 2 LM_K_LOBES_REACH + 1
+ * lines, its own in the middle. Both responses are in decibels over the point's level, from where
+ * the point's own entry is. `along_db_q8` is NULL where the line has not all cells: nothing is
+ * added along it. What is LM_K_LOBES_BELOW_DB_Q8 below a level, or more, is not added. Sums and
+ * differences are held within 16 bits. Cost: 9 a cell of the reach. */
+void lm_k_side_lobes(const int16_t *along_db_q8, const int16_t *across_db_q8, int16_t point_db_q8,
+                     int16_t *const *around, uint32_t cell);
 
 enum { LM_K_TAPS = 8 };
 

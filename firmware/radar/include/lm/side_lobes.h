@@ -63,7 +63,7 @@ void lm_side_lobes_find(struct lm_side_lobes *s, uint32_t line, const int16_t *l
 
 /* Add the side lobes of the strong cells of line `line` to its levels and to those of the lines
  * around it. around[LM_RESPONSE_REACH] are its own levels, around[0] those LM_RESPONSE_REACH lines
- * before it; where the patch has no line, any that is not shown. Cost: some 190 instructions for
+ * before it; where the patch has no line, any that is not shown. Cost: some 150 instructions for
  * each strong cell. */
 void lm_side_lobes_add(const struct lm_side_lobes *s, uint32_t line,
                        int16_t *const around[LM_SIDE_LOBES_CELLS], uint32_t cells);
