@@ -166,8 +166,8 @@ struct lm_sar {
     int16_t ring_db_q8[LM_SAR_RING][LM_CELLS_ROOM]; /* levels of line n at n % LM_SAR_RING */
     /* Its rows, and the first ones again: the lines around one are side by side here. */
     int16_t *ring_rows[LM_SAR_RING + LM_SIDE_LOBES_CELLS - 1];
-    uint64_t power_q32[LM_CELLS_ROOM];              /* work space */
-    int16_t laid_db_q8[LM_LAYOVER_ROOM];            /* work space */
+    uint64_t power_q32[LM_CELLS_ROOM];   /* work space */
+    int16_t laid_db_q8[LM_LAYOVER_ROOM]; /* work space */
 };
 
 /* Judge whether a patch can be made. Returns LM_REFUSED_NOT, or the first of these that holds:
