@@ -3,7 +3,9 @@
 #define LM_UNIT_OWNSHIP_H
 
 #include "lm/nav.h"
+#include "lm/sector.h"
 #include "lm/unit_map.h"
+#include "lm/units.h"
 
 static inline struct lm_position lm_ownship_position(const struct lm_ownship *own)
 {
@@ -20,6 +22,20 @@ static inline int32_t lm_antenna_height_m_q6(const struct lm_ownship *own,
         return own->height_m_q6;
     }
     return own->height_m_q6 - lm_unit_map_geoid_m_q6(map, lm_ownship_position(own));
+}
+
+/* Where the antenna is and how it moves, at a time of the exercise. */
+static inline struct lm_platform
+lm_ownship_platform(const struct lm_ownship *own, const struct lm_unit_map *map, uint64_t time_us)
+{
+    return (struct lm_platform){
+        .position = lm_ownship_position(own),
+        .height_m_q10 = lm_m_q10_of_m_q6(lm_antenna_height_m_q6(own, map)),
+        .heading = own->heading,
+        .track = own->track,
+        .speed_mm_s = (uint32_t)own->ground_speed_mm_s,
+        .time_us = time_us,
+    };
 }
 
 /* True if position and heading are good or stale. */

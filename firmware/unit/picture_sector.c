@@ -68,15 +68,7 @@ static bool is_ready(struct lm_picture *p, uint64_t now_us)
 
 static struct lm_platform platform_of(const struct lm_picture *p)
 {
-    const struct lm_ownship *own = p->lent.ownship;
-    return (struct lm_platform){
-        .position = lm_ownship_position(own),
-        .height_m_q10 = lm_m_q10_of_m_q6(lm_antenna_height_m_q6(own, p->lent.map)),
-        .heading = own->heading,
-        .track = own->track,
-        .speed_mm_s = (uint32_t)own->ground_speed_mm_s,
-        .time_us = p->lent.exercise->time_us,
-    };
+    return lm_ownship_platform(p->lent.ownship, p->lent.map, p->lent.exercise->time_us);
 }
 
 /* Centre the window on the cursor before each sweep, and shift what is drawn accordingly. That
