@@ -225,7 +225,7 @@ void lm_side_lobes_add(const struct lm_side_lobes *s, uint32_t line,
     const struct lm_strong_cell *p = s->line[slot].strong;
     for (const struct lm_strong_cell *const end = p + s->line[slot].count; p != end; p++) {
         const int16_t *along_db_q8 = s->side_db_q8 + p->beyond + LM_RESPONSE_REACH;
-        if ((uint32_t)p->cell - LM_RESPONSE_REACH >= cells - 2 * LM_RESPONSE_REACH) {
+        if (p->cell < LM_RESPONSE_REACH || p->cell + LM_RESPONSE_REACH >= (int32_t)cells) {
             add_along(along_db_q8, p, around[LM_RESPONSE_REACH], (int32_t)cells);
             along_db_q8 = NULL;
         }

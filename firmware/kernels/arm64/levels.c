@@ -114,7 +114,7 @@ static inline int16x8x2_t neon_with_lobes(const struct neon_lobes *of, uint16x8x
 }
 
 /* Of a row of the table of sums, what two look up. */
-static inline uint8x16x2_t neon_sums_row(size_t row, uint8x16_t first, uint8x16_t second)
+static inline uint8x16x2_t neon_look_up_two(size_t row, uint8x16_t first, uint8x16_t second)
 {
     const uint8x16x4_t table = vld1q_u8_x4(fx_table_db_sum_lines[row]);
     return (uint8x16x2_t){{vqtbl4q_u8(table, first), vqtbl4q_u8(table, second)}};
@@ -161,9 +161,9 @@ void lm_k_side_lobes(const int16_t *along_db_q8, const int16_t *across_db_q8, in
             neon_lobes_of(along_db_q8, point,
                           (int16x8x2_t){{vld1q_s16(own - LM_K_LOBES_REACH), vld1q_s16(own + 1)}});
     }
-    const uint8x16x2_t low = neon_sums_row(0, across.at.line, along.at.line);
-    const uint8x16x2_t high = neon_sums_row(1, across.at.line, along.at.line);
-    const uint8x16x2_t fall = neon_sums_row(2, across.at.line, along.at.line);
+    const uint8x16x2_t low = neon_look_up_two(0, across.at.line, along.at.line);
+    const uint8x16x2_t high = neon_look_up_two(1, across.at.line, along.at.line);
+    const uint8x16x2_t fall = neon_look_up_two(2, across.at.line, along.at.line);
     int16x8x2_t sum = neon_with_lobes(
         &across, neon_db_sum_more_q13(low.val[0], high.val[0], fall.val[0], across.at.place));
     neon_store_across(around, cell, sum.val[0]);
