@@ -22,15 +22,8 @@ uint8_t image_height_code(const uint16_t table_dm[16], double height_dm)
 {
     double least = fabs(table_dm[0] - height_dm);
     int best = 0;
-    bool is_rising = true; /* as it should be: then no height follows that is nearer again */
-    for (int i = 1; i < 16; i++) {
-        is_rising &= table_dm[i] >= table_dm[i - 1];
-    }
     for (int i = 1; i < 16 && least > 0; i++) { /* most ground has no height, which comes first */
         const double apart = fabs(table_dm[i] - height_dm);
-        if (is_rising && apart > least) {
-            break;
-        }
         best = apart < least ? i : best;
         least = apart < least ? apart : least;
     }
@@ -161,38 +154,6 @@ static uint16_t cell_of_sums(const struct sums *s, const struct rule *rule)
     return image_cell(gamma, (uint8_t)facing, height);
 }
 
-/* How many of four cells have a class that votes with class `k`, and the sum of their heights. */
-static int votes_of(const uint16_t cells[4], uint8_t group, const struct rule *rule, int *height_dm)
-{
-    int votes = 0;
-    *height_dm = 0;
-    for (int i = 0; i < 4; i++) {
-        const bool is_one = rule->group[image_cell_class(cells[i])] == group;
-        votes += is_one;
-        *height_dm += is_one ? rule->heights_dm[image_cell_height(cells[i])] : 0;
-    }
-    return votes;
-}
-
-/* Of the classes that vote together, the commonest among four cells, of equals the lowest. */
-static uint8_t facing_of(const uint16_t cells[4], uint8_t group, const struct rule *rule)
-{
-    int best = LM_DB_CLASS_NONE, most = 0;
-    for (int i = 0; i < 4; i++) {
-        const uint8_t k = image_cell_class(cells[i]);
-        int count = 0;
-        for (int other = 0; other < 4; other++) {
-            count += image_cell_class(cells[other]) == k;
-        }
-        const bool is_better = count > most || (count == most && k < best);
-        if (k != LM_DB_CLASS_NONE && rule->group[k] == group && is_better) {
-            best = k;
-            most = count;
-        }
-    }
-    return (uint8_t)best;
-}
-
 /* Of four cells that differ in their reflectivity alone, which is what most ground is. */
 static uint16_t cell_of_like(const uint16_t cells[4], const struct rule *rule)
 {
@@ -205,53 +166,6 @@ static uint16_t cell_of_like(const uint16_t cells[4], const struct rule *rule)
     }
     return image_cell(code_of_power(power / 4, high), image_cell_class(cells[0]),
                       rule->same_height[image_cell_height(cells[0])]);
-}
-
-/* What add_cell and cell_of_sums make of four cells, of which most blocks are. */
-static uint16_t cell_of_four(const uint16_t cells[4], const struct rule *rule)
-{
-    double power = 0, structures = 0;
-    int count = 0, best = -1, most = 0, height_dm = 0;
-    uint8_t high = 0;
-    for (int i = 0; i < 4; i++) {
-        const uint8_t k = image_cell_class(cells[i]), gamma = image_cell_gamma(cells[i]);
-        const bool has_data = k != LM_DB_CLASS_NONE;
-        const double own = has_data ? rule->power[gamma] : 0.0;
-        count += has_data;
-        high = has_data && gamma > high ? gamma : high;
-        power += own;
-        structures += rule->stands[k] ? own : 0.0;
-    }
-    if (count == 0) {
-        return IMAGE_CELL_NONE;
-    }
-    const bool is_built = structures > power * rule->least_built;
-    for (int i = 0; i < 4; i++) {
-        const uint8_t group = rule->group[image_cell_class(cells[i])];
-        int sum_dm;
-        const int votes = votes_of(cells, group, rule, &sum_dm);
-        const bool may_win = group != LM_DB_CLASS_NONE && (!is_built || rule->stands[group]);
-        if (may_win && (votes > most || (votes == most && group < best))) {
-            best = group;
-            most = votes;
-            height_dm = sum_dm;
-        }
-    }
-    const uint8_t height = image_height_code(rule->heights_dm, (double)height_dm / most);
-    return image_cell(code_of_power(power / count, high), facing_of(cells, (uint8_t)best, rule),
-                      height);
-}
-
-/* `fine` is the south-western of four cells. */
-static uint16_t reduce_four(const uint16_t *fine, size_t stride, const struct rule *rule)
-{
-    const uint16_t cells[4] = {fine[0], fine[1], fine[stride], fine[stride + 1]};
-    const int differ = (cells[0] ^ cells[1]) | (cells[0] ^ cells[2]) | (cells[0] ^ cells[3]);
-    if (differ == 0) {
-        return cells[0];
-    }
-    const bool are_like = (differ & 255) == 0 && image_cell_class(cells[0]) != LM_DB_CLASS_NONE;
-    return are_like ? cell_of_like(cells, rule) : cell_of_four(cells, rule);
 }
 
 static uint16_t reduce_block(const uint16_t *fine, size_t stride, int factor,
@@ -273,6 +187,18 @@ static uint16_t reduce_block(const uint16_t *fine, size_t stride, int factor,
         }
     }
     return cell_of_sums(&sums, rule);
+}
+
+/* `fine` is the south-western of four cells. */
+static uint16_t reduce_four(const uint16_t *fine, size_t stride, const struct rule *rule)
+{
+    const uint16_t cells[4] = {fine[0], fine[1], fine[stride], fine[stride + 1]};
+    const int differ = (cells[0] ^ cells[1]) | (cells[0] ^ cells[2]) | (cells[0] ^ cells[3]);
+    if (differ == 0) {
+        return cells[0];
+    }
+    const bool are_like = (differ & 255) == 0 && image_cell_class(cells[0]) != LM_DB_CLASS_NONE;
+    return are_like ? cell_of_like(cells, rule) : reduce_block(fine, stride, 2, rule);
 }
 
 void image_reduce(const struct image_reduction *how, const uint16_t *fine, size_t fine_stride,
