@@ -55,6 +55,9 @@ void image_find(struct image_findings *f, uint64_t offset, const char *cause, ..
 void image_findings_tell(struct image_findings *f, struct image_findings *part)
 {
     const struct image_kept *kept = part->kept;
+    if (!kept) {
+        return;
+    }
     for (size_t i = 0; i < kept->count; i++) {
         image_find(f, kept->items[i].offset, "%s",
                    kept->items[i].text ? kept->items[i].text : "not enough memory to say what");
@@ -66,6 +69,9 @@ void image_findings_tell(struct image_findings *f, struct image_findings *part)
 void image_findings_drop(struct image_findings *part)
 {
     struct image_kept *kept = part->kept;
+    if (!kept) {
+        return;
+    }
     for (size_t i = 0; i < kept->count; i++) {
         free(kept->items[i].text);
     }

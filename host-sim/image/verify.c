@@ -311,9 +311,7 @@ static int check_tiles(struct verify *v, uint32_t threads)
     const int result = hs_team_run(&team, parts, threads);
     hs_progress_end(&work.progress);
     for (uint32_t i = 0; i < parts && result != 0; i++) {
-        if (work.parts[i].findings.kept) {
-            image_findings_drop(&work.parts[i].findings);
-        }
+        image_findings_drop(&work.parts[i].findings);
     }
     free(work.parts);
     return result;

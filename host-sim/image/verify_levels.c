@@ -191,9 +191,7 @@ static struct tree *find_tree(const struct trees *trees, uint32_t entry)
 /* What came of a tree, in the order in which one thread would have found it. */
 static int tell_tree(struct verify *v, struct tree *tree, struct rung **out)
 {
-    if (tree->part.findings.kept) { /* some thread had the memory to begin it */
-        verify_part_tell(v, &tree->part);
-    }
+    verify_part_tell(v, &tree->part);
     *out = tree->top;
     tree->top = NULL;
     return tree->status;
@@ -307,9 +305,7 @@ static void free_trees(struct trees *trees)
     for (uint32_t i = 0; i < trees->count; i++) {
         struct tree *tree = &trees->items[i];
         free(tree->top);
-        if (tree->part.findings.kept) {
-            image_findings_drop(&tree->part.findings);
-        }
+        image_findings_drop(&tree->part.findings);
     }
     free(trees->items);
 }

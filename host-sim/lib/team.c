@@ -19,7 +19,7 @@ uint32_t hs_team_threads(void)
 {
     cpu_set_t set;
     const int count = sched_getaffinity(0, sizeof set, &set) == 0 ? CPU_COUNT(&set) : 1;
-    return (uint32_t)(count < 1 ? 1 : count > HS_TEAM_MAX ? HS_TEAM_MAX : count);
+    return (uint32_t)(count < 1 ? 1 : count > HS_TEAM_UNASKED_MAX ? HS_TEAM_UNASKED_MAX : count);
 }
 
 static void note_done(struct run *run, uint32_t part)

@@ -1,46 +1,35 @@
 #include "tracer/trace.h"
 
 #include "hs/error.h"
+#include "hs/team.h"
 #include "tracer/ends.h"
 #include "tracer/trace_tile.h"
 
-#include <pthread.h>
-#include <stdatomic.h>
+#include <stdbool.h>
 #include <stdlib.h>
 #include <string.h>
 
-/* Threads that share the tiles among them. */
-struct team {
+/* Tiles to trace, and what comes of each. */
+struct tiles_work {
     const struct trace_tiles *tiles;
     struct tile_result *results;
-    atomic_uint next;
 };
 
-static void *take_tiles(void *argument)
+static void *begin_tiles(void *ctx)
 {
-    struct team *team = argument;
-    struct tile_work *work = tile_work_new(team->tiles);
-    uint32_t i;
-    while (work && (i = atomic_fetch_add(&team->next, 1)) < team->tiles->tile_count) {
-        trace_tile(team->tiles, i, work, &team->results[i]);
-    }
-    tile_work_free(work);
-    return NULL;
+    return tile_work_new(((struct tiles_work *)ctx)->tiles);
 }
 
-/* A thread, or its memory, may be refused: the others do its share. Returns false when all were. */
-static bool work_together(struct team *team, uint32_t threads)
+static void trace_one(void *ctx, void *own, uint32_t tile)
 {
-    pthread_t others[64];
-    uint32_t started = 0;
-    while (started + 1 < threads && pthread_create(&others[started], NULL, take_tiles, team) == 0) {
-        started++;
-    }
-    take_tiles(team);
-    for (uint32_t i = 0; i < started; i++) {
-        pthread_join(others[i], NULL);
-    }
-    return atomic_load(&team->next) >= team->tiles->tile_count;
+    const struct tiles_work *work = ctx;
+    trace_tile(work->tiles, tile, own, &work->results[tile]);
+}
+
+static void end_tiles(void *ctx, void *own)
+{
+    (void)ctx;
+    tile_work_free(own);
 }
 
 /* Give each tile its own room in the lists. Most of it is never touched, and so costs nothing. */
@@ -87,18 +76,19 @@ static int run_tiles(const struct trace_tiles *tiles, uint32_t threads, struct t
                      uint64_t *rays_cast)
 {
     const uint32_t count = tiles->tile_count;
-    struct team team = {.tiles = tiles, .results = calloc(count, sizeof *team.results)};
+    struct tiles_work work = {.tiles = tiles, .results = calloc(count, sizeof *work.results)};
+    const struct hs_team team = {&work, begin_tiles, trace_one, end_tiles, NULL};
     uint32_t *before = calloc(count, sizeof *before);
-    const bool is_done = before && team.results && lend_room(team.results, tiles, r) &&
-                         work_together(&team, threads);
+    const bool is_done = before && work.results && lend_room(work.results, tiles, r) &&
+                         hs_team_run(&team, count, threads) == 0;
     for (uint32_t b = 0; is_done && b < r->bounce_count; b++) {
-        close_gaps(team.results, count, b, before, &r->bounces[b]);
+        close_gaps(work.results, count, b, before, &r->bounces[b]);
     }
     for (uint32_t i = 0; is_done && rays_cast && i < count; i++) {
-        *rays_cast += team.results[i].rays_cast;
+        *rays_cast += work.results[i].rays_cast;
     }
     free(before);
-    free(team.results);
+    free(work.results);
     return is_done ? 0 : -1;
 }
 

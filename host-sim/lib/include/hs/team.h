@@ -4,7 +4,7 @@
 
 #include <stdint.h>
 
-enum { HS_TEAM_MAX = 16 }; /* threads */
+enum { HS_TEAM_MAX = 64, HS_TEAM_UNASKED_MAX = 16 }; /* threads; where nobody says how many */
 
 /* `ctx` goes to each function, and `own` is what `begin` gave to the calling thread. */
 struct hs_team {
@@ -17,7 +17,7 @@ struct hs_team {
     void (*finish)(void *ctx, uint32_t part);
 };
 
-/* How many processors this program may use, at most HS_TEAM_MAX. */
+/* How many processors this program may use, at most HS_TEAM_UNASKED_MAX. */
 uint32_t hs_team_threads(void);
 
 /* Do parts 0 .. count - 1 with at most so many threads, of which the caller is one. Threads that
