@@ -31,8 +31,8 @@ void image_find(struct image_findings *f, uint64_t offset, const char *cause, ..
     __attribute__((format(printf, 3, 4)));
 
 /* Tell in `f` what was kept in `part`, which is empty afterwards: as if it had been found there. It
- * shows the same lines if `part` keeps as many as `f` shows. A part of zeros, which was never begun,
- * has nothing to tell. */
+ * shows the same lines if `part` keeps as many as `f` shows. A part of zeros, which was never
+ * begun, has nothing to tell. */
 void image_findings_tell(struct image_findings *f, struct image_findings *part);
 
 /* Forget what was kept, if anything. */
