@@ -296,7 +296,7 @@ static inline void neon_shores(const struct lm_k_lit_line *line, const uint8_t *
         const uint8x16x2_t left = vld1q_u8_x2(at);
         const uint8x16_t some = vshlq_n_u8(vorrq_u8(left.val[0], left.val[1]), 7);
         at += LM_K_SHORE_STRETCH;
-        if (vmaxvq_u32(vreinterpretq_u32_u8(some)) != 0) {
+        if (neon_any(some)) {
             const uint32_t behind = (uint32_t)(at - behind_shore);
             for (uint32_t i = behind - LM_K_SHORE_STRETCH; i < behind; i += NEON_CELLS) {
                 const uint64x2_t eights = vreinterpretq_u64_u8(
@@ -348,7 +348,7 @@ void lm_k_light(const struct lm_k_lit_line *line)
     while (at.cell < end) {
         neon_cells(&l, &none, &before, &at);
     }
-    if (vmaxvq_u8(vtstq_u8(before.left, vdupq_n_u8(LM_K_WATER))) != 0) {
+    if (neon_any(vtstq_u8(before.left, vdupq_n_u8(LM_K_WATER)))) {
         vst1q_u8(at.behind_shore, vdupq_n_u8(0)); /* looked at with an odd number of turns */
         neon_shores(line, behind_shore, (uint32_t)first);
     }

@@ -5,6 +5,7 @@
 #define NEON_H
 
 #include <arm_neon.h>
+#include <stdbool.h>
 #include <stddef.h>
 #include <stdint.h>
 
@@ -347,6 +348,12 @@ static inline uint32x4x4_t neon_power_q24(int16x8_t low_db_q8, int16x8_t high_db
     const uint32x4x2_t low_q24 = neon_shift_q15(low_q15, vshrq_n_s16(low_q8, 8)),
                        high_q24 = neon_shift_q15(high_q15, vshrq_n_s16(high_q8, 8));
     return (uint32x4x4_t){{low_q24.val[0], low_q24.val[1], high_q24.val[0], high_q24.val[1]}};
+}
+
+/* As a word: the most of bytes takes an instruction more to ask about. */
+static inline bool neon_any(uint8x16_t x)
+{
+    return vmaxvq_u32(vreinterpretq_u32_u8(x)) != 0;
 }
 
 #endif

@@ -9,7 +9,7 @@ static inline void neon_replace(uint8x16_t marks, uint32x4_t by, uint32_t *cell)
     const uint32x4x4_t old = vld1q_u32_x4(cell);
     const uint8x16_t low = neon_lower_bytes(neon_lower_halves(old));
     const uint8x16_t is_one = vqtbl1q_u8(marks, vshrq_n_u8(low, 4));
-    if (vmaxvq_u8(is_one) == 0) {
+    if (!neon_any(is_one)) {
         return;
     }
     const uint8x16_t pair[2] = {vzip1q_u8(is_one, is_one), vzip2q_u8(is_one, is_one)};

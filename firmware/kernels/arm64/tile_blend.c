@@ -1,5 +1,4 @@
 #include <arm_neon.h>
-#include <stdbool.h>
 
 #include "fx/mem.h"
 #include "lm/kernels_clutter.h"
@@ -61,11 +60,6 @@ struct neon_grown {
     int8x16_t lean_q7;
     int16x8_t crown_q16[2];
 };
-
-static inline bool neon_any(uint8x16_t x)
-{
-    return vmaxvq_u8(x) != 0;
-}
 
 /* Of a mask of classes, the mark in the byte of each class. */
 static inline uint8x16_t neon_marks(uint32_t mask, uint8_t mark)
