@@ -26,14 +26,14 @@ classify() { # IMAGE EXEMPLARS BANDS: network, class raster and reflectivity fro
     say "judge the network by polygons that it has not seen"
     "$bin"/landmass-db train --image "$1" --exemplars "$2" --map "$in/$scene.map" \
         --classes "$in/$scene.classes" --hold-out polygons:0.3 --net "$out/judged.net" --report "$out/judged"
-    say "train on all polygons; segment; assign reflectivity"
+    say "train on all polygons; segment; reflectivity of fields by the brightness of the image"
     "$bin"/landmass-db train --image "$1" --exemplars "$2" --map "$in/$scene.map" \
         --classes "$in/$scene.classes" --goal 0.995 --net "$out/scene.net"
     "$bin"/landmass-db segment --image "$1" --exemplars "$2" --map "$in/$scene.map" \
         --classes "$in/$scene.classes" --net "$out/scene.net" --report "$out/segmentation" \
         --out "$out/classes.tif" --picture "$out/classes.png" --picture-bands "$3"
     "$bin"/landmass-db reflect --class-raster "$out/classes.tif" --classes "$in/$scene.classes" \
-        --method assign --out "$out/reflectivity.tif"
+        --method fields --image "$1" --out "$out/reflectivity.tif"
 }
 
 build() { # TITLE, then options of landmass-db build
