@@ -28,7 +28,7 @@ formatting() {
 
 # The same folder as that of `make check-clang`, so that each source is compiled once.
 clang_build() {
-    make --no-print-directory -s CC="$clang" O="$o" lint-build
+    make --no-print-directory -s -j2 CC="$clang" O="$o" lint-build
 }
 
 # cppcheck 2.10 mistakes an array filled through a pointer for an uninitialised one, and `p = q ? q : p` for a leak;
