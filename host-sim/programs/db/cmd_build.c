@@ -373,6 +373,18 @@ static double terrain_posts_bam(const struct terrain_layer *layer)
     return pixel_bam(&layer->area, layer->pixel_latitude_bam, layer->pixel_longitude_bam) * 2 / 3;
 }
 
+/* The longest cell that can hold an edge which people have drawn. Beyond it a border follows the
+ * pixels of a raster, and a town would be made of them. */
+#define STRAIGHT_CELL_MAX_M 40.0
+
+static void let_all_borders_bend(struct lm_classes *classes)
+{
+    for (int i = 0; i < LM_DB_CLASSES; i++) {
+        struct lm_class *c = &classes->entry[i];
+        c->flags |= c->name[0] != 0 ? LM_CLASS_NATURAL : 0;
+    }
+}
+
 static int choose_shift0(const struct build_context *b, const struct build_settings *s)
 {
     if (s->shift0 > 0) {
@@ -430,6 +442,9 @@ static int make_plan(struct build_context *b, const struct build_settings *s)
     }
     for (int i = 0; i < layers; i++) {
         b->terrain_level[i] = extents[i].level;
+    }
+    if (ldexp(IMAGE_METRES_PER_BAM, shift0) > STRAIGHT_CELL_MAX_M) {
+        let_all_borders_bend(&b->classes);
     }
     b->parts = choose_parts(b, (uint8_t)shift0);
     terrain_set_cell(&b->terrain, (uint8_t)shift0);

@@ -139,6 +139,30 @@ TEST(a_cell_of_many_pixels_takes_the_commonest_class)
     image_close(&image);
 }
 
+/* A town of pixels of 100 m is no row of squares; one of 20 m may have straight sides. */
+TEST(no_border_is_straight_where_cells_are_longer_than_40_m)
+{
+    static const struct {
+        const char *cell;
+        bool are_all_natural;
+    } images[] = {{"--cell 19", false}, {"--cell 38", false}, {"--cell 76", true}};
+    for (size_t n = 0; n < sizeof images / sizeof images[0]; n++) {
+        struct image image;
+        write_codes(GDT_UInt16, code_value);
+        assert_int_equal(run_build(whole_map, images[n].cell), 0);
+        assert_int_equal(image_open(&image, scene_path("codes.lmdb")), 0);
+        bool are_all_natural = true;
+        for (int i = 0; i < LM_DB_CLASSES; i++) {
+            const struct lm_class *c = &image.db.classes.entry[i];
+            const bool is_natural = (c->flags & LM_CLASS_NATURAL) != 0;
+            are_all_natural = are_all_natural && (is_natural || c->name[0] == 0);
+            assert_true(c->name[0] != 0 || !is_natural);
+        }
+        assert_int_equal(are_all_natural, images[n].are_all_natural);
+        image_close(&image);
+    }
+}
+
 TEST(unknown_codes_are_counted_and_named_and_refused)
 {
     write_codes(GDT_UInt16, code_value);
