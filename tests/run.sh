@@ -3,9 +3,10 @@
 # A test program prints "ok N - name", "not ok N - name", or "ok N # SKIP name" (cmocka says "not ok" there too).
 # A program that dies, or prints no result at all, counts as one failure.
 # Programs that clang made to count what they run leave that in BUILD-DIR/profiles (make coverage).
-# Two lanes: tests in emulated machines (panel-vm, zcu102) run one after the other beside those of programs, sockets and
-# browsers. Tests that only compute wait in a queue for the lane that is through first. The results of the lane of the
-# emulated machines are printed at the end.
+# Three lanes on two cores: tests in emulated machines (panel-vm, zcu102) run one after the other beside those of programs,
+# sockets and browsers. Both wait much. What only computes waits in a queue, from which a lane of low priority takes what the
+# others leave of the cores, and then the lane that is through first. The results of that lane and of the emulated machines
+# are printed at the end.
 set -u
 o=$1
 shift
@@ -16,7 +17,7 @@ run_test() { # PROGRAM
     name=${1#"$o"/bin/}
     log=$logs/$(echo "$name" | tr / -).tap
     started=$(date +%s)
-    CMOCKA_MESSAGE_OUTPUT=TAP BUILD=$o LLVM_PROFILE_FILE=$o/profiles/$(basename "$log" .tap)-%2m.profraw timeout -k 5 "${TEST_TIMEOUT:-900}" "$1" >"$log" 2>&1 </dev/null
+    CMOCKA_MESSAGE_OUTPUT=TAP BUILD=$o LLVM_PROFILE_FILE=$o/profiles/$(basename "$log" .tap)-%2m.profraw nice -n "$priority" timeout -k 5 "${TEST_TIMEOUT:-900}" "$1" >"$log" 2>&1 </dev/null
     status=$?
     echo $(($(date +%s) - started)) >"${log%.tap}.seconds" # by which make mutants runs the quick ones first
     s=$(grep -cE '^(not )?ok .*# SKIP' "$log")
@@ -39,8 +40,8 @@ next_in_queue() {
 }
 
 # The tests of standard input, one a line, then those of the queue; the sum goes to a file.
-lane() { # FILE
-    passed=0 failed=0 skipped=0
+lane() { # FILE PRIORITY
+    priority=$2 passed=0 failed=0 skipped=0
     while read -r test; do
         run_test "$test"
     done
@@ -55,12 +56,14 @@ only_computes='/bin/tests/(discipline|fuzz|golden|realism|system/test_real|unit/
 queue=$logs/queue
 rm -f "$logs"/lane-*
 printf '%s\n' "$@" | grep -E "$only_computes" >"$queue"
-printf '%s\n' "$@" | grep -E "$is_emulated" | lane "$logs/lane-emulated" >"$logs/emulated.out" 2>&1 &
-printf '%s\n' "$@" | grep -vE "$is_emulated|$only_computes" | lane "$logs/lane-plain"
+printf '%s\n' "$@" | grep -E "$is_emulated" | lane "$logs/lane-emulated" 0 >"$logs/emulated.out" 2>&1 &
+lane "$logs/lane-queue" 10 </dev/null >"$logs/queue.out" 2>&1 &
+printf '%s\n' "$@" | grep -vE "$is_emulated|$only_computes" | lane "$logs/lane-plain" 0
 wait
-cat "$logs/emulated.out"
-read -r passed failed skipped <"$logs/lane-plain"
-read -r p f s <"$logs/lane-emulated"
-passed=$((passed + p)) failed=$((failed + f)) skipped=$((skipped + s))
+cat "$logs/queue.out" "$logs/emulated.out"
+# A lane that ended without its sum is a failure.
+read -r passed failed skipped <<SUM
+$(awk '{ passed += $1; failed += $2; skipped += $3 } END { print passed, failed + (NR != 3), skipped }' "$logs"/lane-*)
+SUM
 echo "$passed passed, $failed failed, $skipped skipped"
-[ $failed -eq 0 ]
+[ "$failed" -eq 0 ]
