@@ -5,21 +5,31 @@
 /* WGS-84 (EQUATIONS.md, [NIMA]). */
 static const double semi_major_m = 6378137.0, eccentricity2 = 0.00669437999014;
 
-struct reflect_place reflect_place_at(double latitude, double longitude)
+struct reflect_tangent reflect_tangent_at(double latitude, double longitude)
 {
-    const double s = sin(latitude), c = cos(latitude);
-    const double normal = semi_major_m / sqrt(1 - eccentricity2 * s * s);
-    return (struct reflect_place){normal * c * cos(longitude), normal * c * sin(longitude),
-                                  normal * (1 - eccentricity2) * s};
+    struct reflect_tangent t = {.sin_latitude = sin(latitude),
+                                .cos_latitude = cos(latitude),
+                                .sin_longitude = sin(longitude),
+                                .cos_longitude = cos(longitude)};
+    const double normal = semi_major_m / sqrt(1 - eccentricity2 * t.sin_latitude * t.sin_latitude);
+    t.at = (struct reflect_place){normal * t.cos_latitude * t.cos_longitude,
+                                  normal * t.cos_latitude * t.sin_longitude,
+                                  normal * (1 - eccentricity2) * t.sin_latitude};
+    return t;
 }
 
-struct reflect_place reflect_place_beside(struct reflect_place p, double latitude, double longitude,
-                                          double east_m, double north_m)
+struct reflect_place reflect_place_at(double latitude, double longitude)
 {
-    const double inward = -sin(latitude) * north_m;
-    return (struct reflect_place){p.x - sin(longitude) * east_m + cos(longitude) * inward,
-                                  p.y + cos(longitude) * east_m + sin(longitude) * inward,
-                                  p.z + cos(latitude) * north_m};
+    return reflect_tangent_at(latitude, longitude).at;
+}
+
+struct reflect_place reflect_place_beside(const struct reflect_tangent *t, double east_m,
+                                          double north_m)
+{
+    const double inward = -t->sin_latitude * north_m;
+    return (struct reflect_place){t->at.x - t->sin_longitude * east_m + t->cos_longitude * inward,
+                                  t->at.y + t->cos_longitude * east_m + t->sin_longitude * inward,
+                                  t->at.z + t->cos_latitude * north_m};
 }
 
 /* Corner of the lattice, and the place in its cube, 0..1. */
@@ -42,14 +52,38 @@ static struct cube cube_of(struct reflect_place p, double step_m)
     return (struct cube){cx, cy, cz, x - (double)cx, y - (double)cy, z - (double)cz};
 }
 
-/* The finishing steps of splitmix64 over a sum of multiples of odd numbers. */
-static uint64_t hash(uint64_t seed, int64_t x, int64_t y, int64_t z)
+/* Multiples of odd numbers. */
+static uint64_t of_seed(uint64_t seed)
 {
-    uint64_t h = seed * 0xaef17502108ef2d9u + (uint64_t)x * 0xd1342543de82ef95u +
-                 (uint64_t)y * 0x9e3779b97f4a7c15u + (uint64_t)z * 0xc2b2ae3d27d4eb4fu;
+    return seed * 0xaef17502108ef2d9u;
+}
+
+static uint64_t of_x(int64_t x)
+{
+    return (uint64_t)x * 0xd1342543de82ef95u;
+}
+
+static uint64_t of_y(int64_t y)
+{
+    return (uint64_t)y * 0x9e3779b97f4a7c15u;
+}
+
+static uint64_t of_z(int64_t z)
+{
+    return (uint64_t)z * 0xc2b2ae3d27d4eb4fu;
+}
+
+/* The finishing steps of splitmix64 over their sum. */
+static uint64_t finish(uint64_t h)
+{
     h = (h ^ h >> 30) * 0xbf58476d1ce4e5b9u;
     h = (h ^ h >> 27) * 0x94d049bb133111ebu;
     return h ^ h >> 31;
+}
+
+static uint64_t hash(uint64_t seed, int64_t x, int64_t y, int64_t z)
+{
+    return finish(of_seed(seed) + of_x(x) + of_y(y) + of_z(z));
 }
 
 /* Nearly normal, mean 0 and variance 1: how many of 64 bits are set, which is binomial, and a step
@@ -73,11 +107,13 @@ double reflect_pattern_smooth(uint64_t seed, struct reflect_place p, double step
 {
     const struct cube c = cube_of(p, step_m);
     const double u = smooth_step(c.in_x), v = smooth_step(c.in_y), w = smooth_step(c.in_z);
+    const double east[2] = {1 - u, u}, north[2] = {1 - v, v}, up[2] = {1 - w, w};
+    const uint64_t first = of_seed(seed) + of_x(c.x) + of_y(c.y) + of_z(c.z);
     double sum = 0, square = 0;
     for (int i = 0; i < 8; i++) {
         const int x = i & 1, y = i >> 1 & 1, z = i >> 2;
-        const double weight = (x ? u : 1 - u) * (y ? v : 1 - v) * (z ? w : 1 - w);
-        sum += weight * normal_of(hash(seed, c.x + x, c.y + y, c.z + z));
+        const double weight = east[x] * north[y] * up[z];
+        sum += weight * normal_of(finish(first + of_x(x) + of_y(y) + of_z(z)));
         square += weight * weight;
     }
     return sum / sqrt(square);

@@ -272,17 +272,16 @@ double db_reflect_assign_cell(const struct db_reflect_law *law, uint64_t seed, d
                               double longitude, double width_m)
 {
     static const double fine_m = 5, apart_m = 40;
-    const struct reflect_place middle = reflect_place_at(latitude, longitude);
+    const struct reflect_tangent middle = reflect_tangent_at(latitude, longitude);
     if (width_m <= fine_m || law->c->spread_db <= 0) {
-        return db_reflect_assign(law, seed, middle);
+        return db_reflect_assign(law, seed, middle.at);
     }
     const int side = width_m <= apart_m ? 2 : (int)fmin(4, ceil(width_m / apart_m));
     double power = 0;
     for (int i = 0; i < side * side; i++) {
         const double east = ((i % side + 0.5) / side - 0.5) * width_m;
         const double north = ((i / side + 0.5) / side - 0.5) * width_m;
-        const struct reflect_place p =
-            reflect_place_beside(middle, latitude, longitude, east, north);
+        const struct reflect_place p = reflect_place_beside(&middle, east, north);
         power += exp(value_at(law, seed, p, NAN, width_m <= 4 * cell_m) / db_per_neper);
     }
     /* Where the places are farther apart than what they stand for is wide, their mean varies more

@@ -44,7 +44,9 @@ enum {
 enum {
     NAV = LM_FLAG_NAV_STALE | LM_FLAG_NAV_DEAD,
     EXERCISE = LM_FLAG_WEATHER | LM_FLAG_EXERCISE,
-    LATE = LM_FLAG_OFF_MAP, /* a sweep that is joined late is judged by what is left of it */
+    /* A sweep that is joined late, or of which navigation left a part out, is judged by the rest.
+     */
+    LATE = LM_FLAG_OFF_MAP,
     OPERATOR = LM_FLAG_FROZEN | LM_FLAG_SILENT | LM_FLAG_UNABLE | LM_FLAG_OFF_MAP,
     /* What tells the operator that a sweep stands or is gone. */
     STANDS = NAV | LM_FLAG_DB | LM_FLAG_FROZEN | LM_FLAG_SILENT | LM_FLAG_POLE
@@ -95,7 +97,7 @@ static const struct kind_of_fault kinds[KINDS] = {
                     P(LIVE) | P(STANDING) | P(REMOVED), false},
     [NO_SPEED] = {"no speed and track come", 0, NAV, 0, P(LIVE) | P(STANDING) | P(REMOVED), false},
     [NO_ATTITUDE] = {"no pitch and roll come", 0, 0, 0, P(LIVE), false},
-    [BAD_VALUES] = {"a quantity's values are impossible", 0, NAV, 0,
+    [BAD_VALUES] = {"a quantity's values are impossible", 0, NAV | LATE, 0,
                     P(LIVE) | P(STANDING) | P(REMOVED), false},
     [STUCK_CODE] = {"a transmitter is stuck", 0, LM_FLAG_SENDER, LM_FLAG_SENDER, P(LIVE), false},
     [RIVAL] = {"a second node sends a quantity", 0, LM_FLAG_SENDER | NAV, LM_FLAG_SENDER, P(LIVE),
@@ -146,7 +148,8 @@ struct watch {
 static struct look look(const struct rig *r, struct watch *w)
 {
     const struct lm_unit *u = &r->unit;
-    const bool may_stand = u->page.picture == LM_PICTURE_PATCH; /* when it is complete */
+    /* A patch that is complete, and an antenna that stays on a target: its symbols say so. */
+    const bool may_stand = u->page.picture == LM_PICTURE_PATCH || u->track.state >= LM_TRACK_HELD;
     const bool is_seen = u->count.frames != w->frames;
     w->still = u->count.lines != w->lines || may_stand ? 0 : w->still + 1;
     w->unsaid = w->still == 0 || (u->flags & STANDS) != 0 ? 0 : w->unsaid + 1;

@@ -15,10 +15,18 @@ struct reflect_place {
 /* The place at a latitude and longitude, radians. */
 struct reflect_place reflect_place_at(double latitude, double longitude);
 
-/* The place that is `east_m` and `north_m` from `p`, on the plane that touches the ellipsoid at
- * `latitude` and `longitude`. 5 km away it is 2 m above the ground. */
-struct reflect_place reflect_place_beside(struct reflect_place p, double latitude, double longitude,
-                                          double east_m, double north_m);
+/* A place, and the plane that touches the ellipsoid there: for many places around one. */
+struct reflect_tangent {
+    struct reflect_place at;
+    double sin_latitude, cos_latitude, sin_longitude, cos_longitude;
+};
+
+struct reflect_tangent reflect_tangent_at(double latitude, double longitude);
+
+/* The place on the plane that is `east_m` and `north_m` from where it touches. 5 km away it is 2 m
+ * above the ground. */
+struct reflect_place reflect_place_beside(const struct reflect_tangent *t, double east_m,
+                                          double north_m);
 
 /* Smooth pattern: normal, mean 0 and variance 1 at each place, from a lattice of `step_m`. Its
  * correlation is about 0.5 at 0.6 steps and nothing from 2 steps on. */

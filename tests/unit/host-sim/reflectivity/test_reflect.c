@@ -50,9 +50,8 @@ static const double country_latitude = 0.733, country_longitude = -0.506;
 
 static struct reflect_place near_by(int i, double apart_m)
 {
-    const struct reflect_place origin = reflect_place_at(country_latitude, country_longitude);
-    return reflect_place_beside(origin, country_latitude, country_longitude, i % SIDE * apart_m,
-                                i / SIDE * apart_m);
+    const struct reflect_tangent origin = reflect_tangent_at(country_latitude, country_longitude);
+    return reflect_place_beside(&origin, i % SIDE * apart_m, i / SIDE * apart_m);
 }
 
 static struct moments draw(const struct db_class *c)
