@@ -1,5 +1,6 @@
 #include "lm/sector.h"
 
+#include "fx/const.h"
 #include "fx/mem.h"
 #include "fx/root.h"
 #include "fx/sat.h"
@@ -15,10 +16,16 @@ _Static_assert(LM_RADAR_CELLS_MAX * 23 / 16 <= LM_CELLS_MAX, "the lines of a win
 
 enum {
     /* Tiles are requested this many display lines ahead of the beam, and for every eighth line
-     * only. Two such lines are at most 17 cells apart, and a tile has 64. A tile of which they miss
-     * a corner is requested when it is read. */
+     * only. Two such lines are at most 17 cells apart. */
     LINES_AHEAD = 32,
     LINES_APART = 8,
+    /* At the start of a picture they are requested for all of its sweep, along rays that are so
+     * many cells apart at the far end. A tile has 64 cells, so that one between two rays meets one
+     * of them within half that distance beyond the end: its corner is square. Rays are longer by
+     * twice as much, for what the aircraft comes to in a sweep. */
+    RAYS_APART_CELLS = 16,
+    RAY_MORE_CELLS = 16,
+    RAYS_WAIT = 16,      /* requests that wait when no more are made: a line's own come soon */
     CHIP_SIDE_MOST = 32, /* most pixels of a row of a chip: it bounds the cost of a line */
     WINDOW_LINES_MIN = 32,
     WINDOW_LINES_ENOUGH = 256,             /* for beams that need no more */
@@ -57,7 +64,8 @@ void lm_sector_start(struct lm_sector *s, const struct lm_radar *radar,
     s->is_shared = false;
     s->malfunctions = NULL;
     s->command = *command;
-    s->is_begun = s->is_leftward = false;
+    s->is_begun = s->is_leftward = s->is_asked_for = false;
+    s->asked_bam = 0;
     s->taps[0] = s->taps[1] = (struct lm_sector_taps){.is_kept = false};
     s->line = 0;
     s->sweep = epoch;
@@ -71,7 +79,8 @@ void lm_sector_start(struct lm_sector *s, const struct lm_radar *radar,
 
 void lm_sector_begin_again(struct lm_sector *s)
 {
-    s->is_begun = s->has_taps = s->has_foreground = false;
+    s->is_begun = s->has_taps = s->has_foreground = s->is_asked_for = false;
+    s->asked_bam = 0;
     s->line = s->is_leftward && s->lines > 0 ? s->lines - 1 : 0;
     lm_beam_clear(&s->beam);
 }
@@ -419,6 +428,13 @@ static struct lm_ground_path sample_path(const struct lm_sector *s, const struct
                    s->ground_edge_m_q8 + s->grid.cells * s->grid.cell_m_q8, s->grid.cells);
 }
 
+/* Path of the foreground of a window. */
+static struct lm_ground_path foreground_path(const struct lm_sector *s,
+                                             const struct lm_geo_ray *ray)
+{
+    return path_of(ray, s->foreground.start_m_q8, s->ground_edge_m_q8, LM_FOREGROUND_CELLS);
+}
+
 /* Horizon behind the foreground of a window. All azimuths within one line of the table share that
  * of its middle, and the order in which they are traced does not matter. */
 static lm_horizon_q40_t horizon_at(struct lm_sector *s, struct lm_tile_cache *tiles,
@@ -432,8 +448,7 @@ static lm_horizon_q40_t horizon_at(struct lm_sector *s, struct lm_tile_cache *ti
     if (!s->has_foreground || part != s->foreground_part) {
         struct lm_geo_ray ray;
         lm_geo_set_ray(&ray, &s->origin, s->up - FX_BAM_90 + part * width + width / 2);
-        const struct lm_ground_path path =
-            path_of(&ray, s->foreground.start_m_q8, s->ground_edge_m_q8, LM_FOREGROUND_CELLS);
+        const struct lm_ground_path path = foreground_path(s, &ray);
         s->foreground_horizon =
             lm_foreground_horizon(&s->foreground, &s->class_lut, tiles, &path, &line->ground);
         s->foreground_part = part;
@@ -713,14 +728,45 @@ bool lm_sector_sample_ahead(struct lm_sector *s, struct lm_tile_cache *tiles,
     return true;
 }
 
-static void prefetch(const struct lm_sector *s, struct lm_tile_cache *tiles)
+/* Request the tiles along a ray: those of the sweep and of what lies a little before and behind it,
+ * and those of the foreground. */
+static void request(const struct lm_sector *s, struct lm_tile_cache *tiles, fx_bam_t azimuth)
 {
     struct lm_geo_ray ray;
-    const uint32_t ahead = fx_min_u32(LINES_AHEAD, s->lines - 1);
-    const fx_bam_t azimuth = s->up + (fx_bam_t)middle_of(s, line_ahead(s, ahead));
-    lm_geo_set_ray(&ray, &s->origin, azimuth);
-    const struct lm_ground_path path = sample_path(s, &ray);
+    const uint32_t more_m_q8 = RAY_MORE_CELLS * s->grid.cell_m_q8;
+    const uint32_t from_m_q8 = s->ground_edge_m_q8 - fx_min_u32(more_m_q8, s->ground_edge_m_q8);
+    const uint32_t to_m_q8 = s->ground_edge_m_q8 + s->grid.cells * s->grid.cell_m_q8 + more_m_q8;
+    lm_geo_set_ray(&ray, &s->origin, s->up + azimuth);
+    const struct lm_ground_path path = path_of(&ray, from_m_q8, to_m_q8, s->grid.cells);
     lm_scan_line_prefetch(tiles, s->lod, &path, s->grid.cells);
+    if (s->foreground.grid.cells != 0) {
+        const struct lm_ground_path before = foreground_path(s, &ray);
+        lm_scan_line_prefetch(tiles, s->foreground.lod, &before, LM_FOREGROUND_CELLS);
+    }
+}
+
+static void prefetch(const struct lm_sector *s, struct lm_tile_cache *tiles)
+{
+    const uint32_t ahead = fx_min_u32(LINES_AHEAD, s->lines - 1);
+    request(s, tiles, (fx_bam_t)middle_of(s, line_ahead(s, ahead)));
+}
+
+void lm_sector_prefetch(struct lm_sector *s, struct lm_tile_cache *tiles)
+{
+    if (s->is_asked_for || !s->is_begun || lm_tile_cache_waiting(tiles) >= RAYS_WAIT) {
+        return;
+    }
+    /* A line takes samples to both sides, at most 6 degrees apart, and a sweep is half a turn at
+     * most: the sum is below 2^32. Cells are below 2^24, and 64 or more: the quotient is below
+     * 2^28. */
+    const uint32_t beside = LM_BEAM_TAPS / 2 * lm_beam_spacing(&s->beam, s->radar);
+    const uint32_t all = s->lines * s->width + 2 * beside;
+    const uint32_t end_m_q8 = s->ground_edge_m_q8 + s->grid.cells * s->grid.cell_m_q8;
+    const uint32_t apart =
+        (uint32_t)((uint64_t)RAYS_APART_CELLS * FX_BAM_PER_RADIAN * s->grid.cell_m_q8 / end_m_q8);
+    request(s, tiles, (fx_bam_t)s->left + s->asked_bam - beside);
+    s->is_asked_for = s->asked_bam == all;
+    s->asked_bam = fx_min_u32(s->asked_bam + apart, all);
 }
 
 /* Fill the line's ground with what it leaks, fade it, and move on in the grain: a row of it is a

@@ -50,10 +50,10 @@ static void sweep_on(struct lm_picture *p)
     (void)p;
 }
 
-/* The sector requests its tiles when it samples. */
-static void prefetch_none(struct lm_picture *p)
+/* The tiles of the first sweep; after that, lines request them before they are swept. */
+static void prefetch(struct lm_picture *p)
 {
-    (void)p;
+    lm_sector_prefetch(&p->sector, &p->lent.map->tiles);
 }
 
 /* Between two sweeps of an exercise the antenna rests until the next one's time has come. */
@@ -330,7 +330,7 @@ const struct lm_picture_methods lm_picture_sector = {
     .moves = true,
     .start = start,
     .restart = sweep_on,
-    .prefetch = prefetch_none,
+    .prefetch = prefetch,
     .is_ready = is_ready,
     .begin = begin,
     .sample_ahead = sample_ahead,

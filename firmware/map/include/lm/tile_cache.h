@@ -246,6 +246,12 @@ static inline struct lm_tile_base lm_tile_base_of(const struct lm_tile *pool,
  * if it is resident or requested already. A full ring drops the request and counts it. */
 void lm_tile_cache_want(struct lm_tile_cache *c, uint8_t lod, uint32_t row, uint32_t column);
 
+/* Number of requests that wait for the flash. */
+static inline uint32_t lm_tile_cache_waiting(const struct lm_tile_cache *c)
+{
+    return c->wanted_head - c->wanted_tail;
+}
+
 /* Read something else of the image before the next tile. The caller fills offset, destination and
  * length. True if taken: the cache borrows `request` until its status is no longer LM_BUSY. False,
  * with nothing taken, while another request waits or is being read. */

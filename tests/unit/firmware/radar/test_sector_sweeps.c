@@ -163,3 +163,49 @@ TEST(the_tiles_of_a_line_are_there_when_the_line_32_before_it_was_drawn)
     print_message("# missing: %u look-ups 32 lines ahead, %u 64 lines ahead\n", there, not_yet);
     assert_true(there < 10 && not_yet > 50);
 }
+
+/* Look-ups of two sweeps that found no tile, when what was asked for at their start was read. */
+static uint32_t missing_of_sweep(struct sector_world *w, uint8_t fov)
+{
+    const struct lm_sector_command command = {.centre = middle_of_map,
+                                              .mode = LM_SECTOR_GM,
+                                              .fov = fov,
+                                              .range_index =
+                                                  (uint8_t)lm_radar_find_range(&w->radar, 10)};
+    struct lm_sector *s = &w->sector;
+    lm_tile_cache_mount(&w->map.tiles, &w->map.db, 1); /* no tile is there */
+    lm_sector_start(s, &w->radar, &command, 0);
+    lm_sector_prefetch(s, &w->map.tiles);
+    assert_true(lm_tile_cache_is_idle(&w->map.tiles)); /* of no geometry none is asked for */
+    lm_sector_begin(s, &w->map.tiles, &w->platform);
+    for (uint32_t rays = 0; !s->is_asked_for; rays++) {
+        assert_true(rays < 100);
+        lm_sector_prefetch(s, &w->map.tiles);
+        tiny_map_read_tiles(&w->map);
+    }
+    const uint32_t before = w->map.tiles.count.misses;
+    for (uint32_t lines = 2 * s->lines; lines > 0; lines--) {
+        lm_sector_draw_line(s, &w->map.tiles, &w->platform, &w->tone, &w->line);
+    }
+    return w->map.tiles.count.misses - before;
+}
+
+TEST(the_tiles_of_all_of_a_sweep_are_there_when_they_were_asked_for_at_its_start)
+{
+    static const uint8_t fields[] = {LM_FOV_NORM, LM_FOV_EXP, LM_FOV_DBS1};
+    struct sector_world *w = make_world(NULL);
+    for (uint32_t n = 0; n < sizeof fields; n++) {
+        uint32_t missing = 0;
+        face_centre(w, 0);
+        for (int degrees = 0; degrees < 360; degrees += fields[n] == LM_FOV_NORM ? 7 : 360) {
+            if (fields[n] == LM_FOV_NORM) {
+                w->platform.position = middle_of_map;
+                w->platform.heading = hs_bam(degrees);
+            }
+            missing += missing_of_sweep(w, fields[n]);
+        }
+        print_message("# field %u: %u look-ups without a tile\n", fields[n], missing);
+        assert_int_equal(missing, 0);
+    }
+    free_sector_world(w);
+}
