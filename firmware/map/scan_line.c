@@ -36,11 +36,13 @@ struct map_axis {
 
 /* Walk of a line through the tiles of one LOD. */
 struct walk {
-    const struct lm_ground_path *path; /* borrowed */
-    const struct lm_k_blend *blend;    /* borrowed; NULL: the nearest cells are read */
+    const struct lm_ground_path *path;  /* borrowed */
+    const struct lm_scan_blend *wanted; /* borrowed; NULL: no tile is blended */
+    const struct lm_k_blend *blend;     /* borrowed; NULL: the nearest cells are read */
     bool tells_runs;
     struct map_axis north, east;
     uint32_t cells;
+    uint8_t lod;
     uint32_t side_log2; /* of a tile, in BAM of latitude */
     uint32_t sixteenth; /* of the current row: sixteenth_of_row */
 };
@@ -58,27 +60,44 @@ uint8_t lm_scan_lod(const struct lm_db *db, uint32_t cell_mm)
 /* Lengths of cells for crowns: the map must not show them, and the picture must. */
 enum { CROWN_CELL_MM = 3500 };
 
-/* Four texels a cell, or those of the crowns' own size. */
-enum { TEXEL_SHIFT = 32 - LM_TILE_CELLS_LOG2 - 2 };
+/* Turn the blend to the tiles of an LOD. */
+static void turn_to_lod(struct lm_scan_blend *b, const struct lm_db *db, uint8_t lod)
+{
+    const uint32_t cell_mm = b->cell_mm, map_mm = lm_db_cell_mm(db, lod);
+    const bool has_crowns = cell_mm < CROWN_CELL_MM && map_mm > CROWN_CELL_MM;
+    b->is_on = (uint64_t)3 * cell_mm < (uint64_t)2 * map_mm;
+    b->crowned = has_crowns ? b->trees : 0;
+    b->grown_shift = has_crowns ? 32u - LM_TILE_CELLS_LOG2 - db->shift0 - lod + LM_GROWN_TEXEL_LOG2
+                                : LM_GROWN_CELL_SHIFT;
+    /* Three halves of a texel, which is map_mm over 2^(32 - 6 - grown_shift). */
+    b->is_stepped =
+        (uint64_t)2 * cell_mm << (32 - LM_TILE_CELLS_LOG2 - b->grown_shift) >= (uint64_t)3 * map_mm;
+}
 
 void lm_scan_blend_set(struct lm_scan_blend *b, const struct lm_db *db, uint32_t cell_mm)
 {
-    const uint32_t map_mm = lm_db_cell_mm(db, db->finest);
-    const bool has_crowns = cell_mm < CROWN_CELL_MM && map_mm > CROWN_CELL_MM;
-    b->is_on = (uint64_t)3 * cell_mm < (uint64_t)2 * map_mm;
-    b->natural = b->crowned = b->flat = 0;
+    b->cell_mm = cell_mm;
+    b->natural = b->trees = b->flat = 0;
     b->tells_runs = false;
     for (uint32_t i = 0; i < LM_DB_CLASSES; i++) {
         const struct lm_class *c = &db->classes.entry[i];
         b->natural |= (uint32_t)(c->flags & LM_CLASS_NATURAL) << i;
-        b->crowned |= (uint32_t)(has_crowns && c->kind == LM_KIND_TREES) << i;
+        b->trees |= (uint32_t)(c->kind == LM_KIND_TREES) << i;
     }
-    b->grown_shift = has_crowns
-                         ? 32u - LM_TILE_CELLS_LOG2 - db->shift0 - db->finest + LM_GROWN_TEXEL_LOG2
-                         : TEXEL_SHIFT;
-    /* Three halves of a texel, which is map_mm over 2^(32 - 6 - grown_shift). */
-    b->is_stepped =
-        (uint64_t)2 * cell_mm << (32 - LM_TILE_CELLS_LOG2 - b->grown_shift) >= (uint64_t)3 * map_mm;
+    turn_to_lod(b, db, db->finest);
+}
+
+static struct lm_k_blend kernel_blend(const struct lm_scan_blend *b,
+                                      const struct lm_tile_cache *tiles)
+{
+    return (struct lm_k_blend){.points = lm_tile_origin(tiles->pool),
+                               .grown = lm_grown,
+                               .height_dm_of_code = tiles->db->classes.height_dm,
+                               .grown_shift = b->grown_shift,
+                               .is_stepped = b->is_stepped,
+                               .natural = b->natural,
+                               .crowned = b->crowned,
+                               .flat = b->flat};
 }
 
 static inline uint64_t magnitude(int64_t x)
@@ -154,9 +173,11 @@ static OUT_OF_LINE void start_walk(struct walk *w, const struct lm_db *db, uint8
                                    const struct lm_ground_path *path, uint32_t cells)
 {
     w->blend = NULL;
+    w->wanted = NULL;
     const uint64_t from_pole = path->latitude + ((uint64_t)FX_BAM_90 << 32);
     w->path = path;
     w->cells = cells;
+    w->lod = lod;
     w->side_log2 = (uint32_t)db->shift0 + lod + LM_TILE_CELLS_LOG2;
     start_axis(&w->north,
                (struct path_coordinate){from_pole, path->latitude_step, path->latitude_bend},
@@ -263,6 +284,44 @@ static inline void assign_tile(struct lm_tile_base tile, uint32_t first, uint32_
     }
 }
 
+/* Classes have a gain at each LOD, and readers add that of the line's. Add what the ancestor's is
+ * more. Gains are within 2^15, and what a blend adds is within 2^14. */
+static void add_gain(const struct lm_classes *classes, uint8_t lod, uint8_t of_line, uint32_t first,
+                     uint32_t end, struct lm_scan_line *line)
+{
+    uint32_t more[LM_DB_CLASSES] = {0}, any = 0;
+    for (uint32_t i = 0; i < LM_DB_CLASS_NONE; i++) {
+        const int16_t *gain_db_q8 = classes->entry[i].lod_gain_db_q8;
+        more[i] = (uint32_t)(gain_db_q8[lod] - gain_db_q8[of_line]) << 16;
+        any |= more[i];
+    }
+    for (uint32_t k = first; k < end && any != 0; k++) {
+        line->cell[k] += more[line->cell[k] >> 4 & 15];
+    }
+}
+
+/* Read a run from an ancestor that is assigned to it. Where the map has nothing finer it is
+ * blended, if its cells are so much longer than the line's. */
+static void read_ancestor(const struct walk *w, const struct lm_tile_cache *tiles,
+                          const struct lm_tile *tile, const struct lm_tile_coords *coords,
+                          uint32_t first, uint32_t end, struct lm_scan_line *line)
+{
+    struct lm_scan_blend blend = {.is_on = false};
+    if (w->wanted && !tiles->is_late) {
+        blend = *w->wanted;
+        turn_to_lod(&blend, tiles->db, tile->lod);
+    }
+    if (blend.is_on) {
+        const struct lm_k_blend map = kernel_blend(&blend, tiles);
+        lm_tile_blend(&map, coords, first, end, line);
+    } else {
+        lm_tile_read(tiles->pool, coords, first, end, line);
+    }
+    if (!tiles->is_late) {
+        add_gain(&tiles->db->classes, tile->lod, w->lod, first, end, line);
+    }
+}
+
 /* Read a run whose tile was not found by lm_tile_cache_peek: from the tile, an ancestor, or
  * nothing. It is read at once, because an ancestor's coordinates are good for this run alone. */
 static OUT_OF_LINE void read_substitute(const struct walk *w, struct lm_tile_cache *tiles,
@@ -282,8 +341,8 @@ static OUT_OF_LINE void read_substitute(const struct walk *w, struct lm_tile_cac
         quadratic_in_ancestor(&w->north.coordinate, middle, generations),
         quadratic_in_ancestor(&w->east.coordinate, middle, generations)};
     assign_tile(lm_tile_base_of(tiles->pool, tile), first, end, line);
-    lm_tile_read(tiles->pool, &coords, first, end, line);
-    if (line->cell[middle] != LM_CELL_NONE && tile->lod > lod) {
+    read_ancestor(w, tiles, tile, &coords, first, end, line);
+    if ((uint16_t)line->cell[middle] != LM_CELL_NONE && tile->lod > lod) {
         line->coarsest_lod = tile->lod > line->coarsest_lod ? tile->lod : line->coarsest_lod;
         line->coarse_cells = (uint16_t)(line->coarse_cells + end - first);
     }
@@ -357,16 +416,10 @@ void lm_scan_line_run(struct lm_scan_line *line, struct lm_tile_cache *tiles, ui
     line->coarse_cells = 0;
     line->run_count = 0;
     start_walk(&w, tiles->db, lod, path, cells);
+    w.wanted = blend;
     w.tells_runs = blend && blend->tells_runs;
     if (blend && blend->is_on) {
-        map = (struct lm_k_blend){.points = lm_tile_origin(tiles->pool),
-                                  .grown = lm_grown,
-                                  .height_dm_of_code = tiles->db->classes.height_dm,
-                                  .grown_shift = blend->grown_shift,
-                                  .is_stepped = blend->is_stepped,
-                                  .natural = blend->natural,
-                                  .crowned = blend->crowned,
-                                  .flat = blend->flat};
+        map = kernel_blend(blend, tiles);
         w.blend = &map;
     }
     for (uint32_t k = 0; k < cells;) {

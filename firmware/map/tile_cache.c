@@ -288,24 +288,45 @@ static void go_on_filling(struct lm_tile_cache *c)
     }
 }
 
-/* The tile is whole: make it resident if it passes its check, or fill its gaps, or those of another
- * by it. */
+/* The tile is whole: make it resident, or fill its gaps, or those of another by it. */
+static void use_tile(struct lm_tile_cache *c)
+{
+    const struct lm_tile_key *key = &c->reading;
+    if (has_several(c) && c->has_gaps) {
+        struct lm_tile *filled = &c->pool[c->reading_slot];
+        lm_tile_fill_begin(&c->fill, filled, record_of(c), (uint32_t)(key->lod - filled->lod),
+                           &c->db->classes);
+        c->is_filling = true;
+    } else {
+        fill_on(c);
+    }
+}
+
+static void go_on_fitting(struct lm_tile_cache *c, int status)
+{
+    c->is_fitting = status == LM_BUSY;
+    if (!c->is_fitting) {
+        use_tile(c);
+    }
+}
+
+/* The record is whole: use it if it passes its check, fitted to those of other images. */
 static void take_tile(struct lm_tile_cache *c)
 {
     const struct lm_tile_key *key = &c->reading;
+    const struct lm_db *image = &c->images[key->image];
     struct lm_tile *tile = record_of(c);
-    const uint8_t lod = lod_in(c, &c->images[key->image], key->lod);
+    const uint8_t lod = lod_in(c, image, key->lod);
     if (lm_tile_check(tile, lod, key->row, key->column) != LM_OK) {
         fail(c, &c->count.corrupt);
         return;
     }
     tile->lod = key->lod; /* of the cache from now on */
-    if (has_several(c) && c->has_gaps) {
-        struct lm_tile *filled = &c->pool[c->reading_slot];
-        lm_tile_fill_begin(&c->fill, filled, tile, (uint32_t)(key->lod - filled->lod));
-        c->is_filling = true;
+    if (has_several(c)) {
+        go_on_fitting(
+            c, lm_tile_fit_begin(&c->fit, tile, &image->classes, lod, &c->db->classes, key->lod));
     } else {
-        fill_on(c);
+        use_tile(c);
     }
 }
 
@@ -376,7 +397,7 @@ static bool start_pending(struct lm_tile_cache *c)
 /* The read under way ends for nobody. */
 static void discard(struct lm_tile_cache *c)
 {
-    c->is_stale = c->is_unpacking = c->is_filling = c->is_refused = false;
+    c->is_stale = c->is_unpacking = c->is_fitting = c->is_filling = c->is_refused = false;
     unlink_slot(c, c->reading_slot);
     finish(c, LM_SLOT_FREE);
 }
@@ -417,7 +438,12 @@ void lm_tile_cache_service(struct lm_tile_cache *c, uint64_t now_us, uint32_t re
             go_on_unpacking(c, lm_tile_unpack_run(&c->unpack));
             continue;
         }
+        if (has_several(c) && c->is_fitting) {
+            go_on_fitting(c, lm_tile_fit_run(&c->fit));
+            continue;
+        }
         if (has_several(c) && c->is_filling) {
+            i += lm_tile_fill_is_dear(&c->fill); /* counts as two */
             go_on_filling(c);
             continue;
         }
@@ -516,6 +542,7 @@ const struct lm_tile *lm_tile_cache_get(struct lm_tile_cache *c, uint8_t lod, ui
         if (is_resident(c, i)) {
             c->count.not_exact += at != lod;
             c->count.substituted += is_missed;
+            c->is_late = is_wanted;
             return use_slot(c, i);
         }
         if (!is_wanted) {
@@ -656,7 +683,7 @@ void lm_tile_cache_mount(struct lm_tile_cache *c, const struct lm_db *images, ui
         }
     }
     c->is_stale = c->reading_slot != LM_SLOT_NONE;
-    if (c->is_stale && (c->is_unpacking || c->is_filling || c->is_refused)) {
+    if (c->is_stale && (c->is_unpacking || c->is_fitting || c->is_filling || c->is_refused)) {
         discard(c);
     }
 }

@@ -1,11 +1,20 @@
 #include "lm/tile_fill.h"
 
+#include "fx/hash.h"
 #include "fx/sat.h"
+#include "lm/grown.h"
+#include "lm/kernels_clutter.h"
+#include "lm/kernels_map.h"
+#include "lm/lanes.h"
 
 enum {
     NONE_MASK = 15 << 4,
     NONE = LM_DB_CLASS_NONE << 4,
-    FINE_LOG2 = 8 /* places in a cell of the source are told to 1/256 */
+    FINE_LOG2 = 8, /* places in a cell of the source are told to 1/256 */
+    ROW_GROUPS = (LM_TILE_POINTS + LM_LANES - 1) / LM_LANES,
+    ROW_ROOM = (ROW_GROUPS + 1) * LM_LANES,
+    ANY_SCALE = -8,  /* of struct lm_tile_base: sea level and the least steps */
+    STEPPED_MOST = 1 /* generations of which a cell of the tile has 3/2 texels or more */
 };
 
 static bool is_none(const struct lm_tile *tile, uint32_t row, uint32_t column)
@@ -26,11 +35,12 @@ bool lm_tile_has_gaps(const struct lm_tile *tile)
 }
 
 void lm_tile_fill_begin(struct lm_tile_fill *f, struct lm_tile *tile, const struct lm_tile *source,
-                        uint32_t generations)
+                        uint32_t generations, const struct lm_classes *classes)
 {
     const uint32_t within = (1u << generations) - 1;
     *f = (struct lm_tile_fill){.tile = tile,
                                .source = source,
+                               .classes = classes,
                                .generations = generations,
                                .row0 = (int32_t)((tile->row & within) * LM_TILE_CELLS),
                                .column0 = (int32_t)((tile->column & within) * LM_TILE_CELLS),
@@ -38,6 +48,11 @@ void lm_tile_fill_begin(struct lm_tile_fill *f, struct lm_tile *tile, const stru
                                .most_m_q6 = INT32_MIN,
                                .base_m_q6 = tile->base_m_q6,
                                .post_shift = tile->post_shift};
+    for (uint32_t i = 0; i < LM_DB_CLASS_NONE; i++) {
+        const int16_t *gain_db_q8 = classes->entry[i].lod_gain_db_q8;
+        f->natural |= (uint32_t)(classes->entry[i].flags & LM_CLASS_NATURAL) << i;
+        f->more_db_q8[i] = gain_db_q8[tile->lod + generations] - gain_db_q8[tile->lod];
+    }
 }
 
 /* Place of a point of the tile in the source: its point there, 0..65, and how far behind it. Cells
@@ -75,30 +90,37 @@ static int32_t source_m_q6(const struct lm_tile *s, struct place row, struct pla
     return s->base_m_q6 + (int32_t)((uint32_t)(both >> 16) << s->post_shift);
 }
 
-/* True if a cell that has data has its corner there. */
-static bool stays(const struct lm_tile *t, uint32_t row, uint32_t column)
+/* Gaps of a row: posts that are the corner of no cell with data, and take the source's elevation.
+ * Returns whether a cell of the row has no data. */
+static bool find_gaps(const struct lm_tile *t, uint32_t row, bool gap[LM_TILE_POINTS])
 {
-    const uint32_t south = row - (row > 0), west = column - (column > 0);
-    return !is_none(t, row, column) || !is_none(t, south, column) || !is_none(t, row, west) ||
-           !is_none(t, south, west);
+    const struct lm_tile_point *own = t->points[row], *south = t->points[row - (row > 0)];
+    bool is_west_none = true, has_none = false;
+    for (uint32_t column = 0; column < LM_TILE_POINTS; column++) {
+        const bool is_own_none = (own[column].cell & NONE_MASK) == NONE;
+        const bool are_none = is_own_none && (south[column].cell & NONE_MASK) == NONE;
+        gap[column] = are_none && is_west_none;
+        has_none |= is_own_none;
+        is_west_none = are_none;
+    }
+    return has_none;
 }
 
-/* Elevation of a point in the filled tile. */
+/* Elevation of a post in the filled tile. */
 static int32_t filled_m_q6(const struct lm_tile_fill *f, struct place at, uint32_t row,
-                           uint32_t column)
+                           uint32_t column, bool is_gap)
 {
-    const struct lm_tile *t = f->tile;
-    if (stays(t, row, column)) {
-        return f->base_m_q6 + (t->points[row][column].post << f->post_shift);
-    }
-    return source_m_q6(f->source, at, place_of(f, f->column0, column));
+    return is_gap ? source_m_q6(f->source, at, place_of(f, f->column0, column))
+                  : f->base_m_q6 + (f->tile->points[row][column].post << f->post_shift);
 }
 
 static void measure_row(struct lm_tile_fill *f, uint32_t row)
 {
     const struct place at = place_of(f, f->row0, row);
+    bool gap[LM_TILE_POINTS];
+    find_gaps(f->tile, row, gap);
     for (uint32_t column = 0; column < LM_TILE_POINTS; column++) {
-        const int32_t m_q6 = filled_m_q6(f, at, row, column);
+        const int32_t m_q6 = filled_m_q6(f, at, row, column, gap[column]);
         f->least_m_q6 = fx_min_i32(f->least_m_q6, m_q6);
         f->most_m_q6 = fx_max_i32(f->most_m_q6, m_q6);
     }
@@ -119,17 +141,115 @@ static void set_steps(struct lm_tile_fill *f)
     }
 }
 
-/* From the north-east: whether a post stays hangs on cells to its south-west. */
+/* Cells of a row as the source is blended there, as lm_k_tile_blend tells them; and what their
+ * heights lack to those of the blend, metres * 16384. */
+struct blended {
+    uint32_t cell[ROW_ROOM];
+    int32_t lack_m_q14[ROW_ROOM];
+};
+
+/* Places are those of the middles of the tile's cells in the source. That of a cell beside the
+ * source is anywhere in it. */
+static void blend_row(const struct lm_tile_fill *f, uint32_t row, struct blended *b)
+{
+    const uint32_t side_log2 = 32 - LM_TILE_CELLS_LOG2 - f->generations,
+                   half = 1u << side_log2 >> 1;
+    const uint32_t north = (uint32_t)f->row0 + row - LM_TILE_BORDER;
+    const uint32_t west = (uint32_t)f->column0 - LM_TILE_BORDER;
+    const struct lm_tile_coords places = {.north = {.at = (north << side_log2) + half},
+                                          .east = {(west << side_log2) + half, 1u << side_log2, 0}};
+    const struct lm_k_blend map = {.points = lm_tile_origin(f->source),
+                                   .grown = lm_grown,
+                                   .height_dm_of_code = f->classes->height_dm,
+                                   .grown_shift = LM_GROWN_CELL_SHIFT,
+                                   .is_stepped = f->generations <= STEPPED_MOST,
+                                   .natural = f->natural};
+    uint32_t nearest[ROW_ROOM];
+    int32_t terrain_m_q14[ROW_ROOM];
+    for (uint32_t i = 0; i < ROW_ROOM; i++) {
+        nearest[i] = b->cell[i] = 0;
+        terrain_m_q14[i] = b->lack_m_q14[i] = ANY_SCALE;
+    }
+    lm_k_tile_read(map.points, &places, 0, ROW_GROUPS, nearest, terrain_m_q14);
+    lm_k_tile_blend(&map, &places, 0, ROW_GROUPS, b->cell, b->lack_m_q14);
+    for (uint32_t i = 0; i < LM_TILE_POINTS; i++) {
+        b->lack_m_q14[i] -= terrain_m_q14[i];
+    }
+}
+
+/* Of the codes of the heights below and above one the nearer; or one that is drawn by the place, so
+ * that the mean stays. `draw` is of 2^16, and 2^15 draws the nearer. */
+static uint32_t code_of(const uint16_t *height_dm, int32_t m_q14, uint32_t draw)
+{
+    uint32_t code = 0;
+    while (code + 2 < LM_K_CODES && m_q14 >= lm_k_height_m_q14(height_dm[code + 1])) {
+        code++;
+    }
+    /* Heights are below 2^27, and equal ones have no share. */
+    const int64_t low = lm_k_height_m_q14(height_dm[code]);
+    const int64_t apart = lm_k_height_m_q14(height_dm[code + 1]) - low;
+    return code + ((m_q14 - low) << 16 > apart * (int64_t)draw);
+}
+
+/* Trees have tops: no two cells of theirs are alike. */
+static uint32_t draw_of(const struct lm_tile_fill *f, uint32_t cell, uint32_t row, uint32_t column)
+{
+    const struct lm_tile *t = f->tile;
+    return f->classes->entry[cell >> 4 & 15].kind != LM_KIND_TREES
+               ? 1u << 15
+               : fx_hash3(t->row * LM_TILE_CELLS + row, t->column * LM_TILE_CELLS + column, 0) >>
+                     16;
+}
+
+/* The cell of a record that has the class and height of one, and so much more reflectivity as its
+ * class has gain at the source's LOD. A code is 1/2 dB. */
+static uint16_t cell_with(const struct lm_tile_fill *f, uint32_t cell, int32_t more_db_q8)
+{
+    const int32_t more = (more_db_q8 + f->more_db_q8[cell >> 4 & 15] + 64) >> 7;
+    const int32_t gamma = fx_clamp_i32((int32_t)(cell >> 8 & 255) + more, 0, 255);
+    return (uint16_t)((uint32_t)gamma << 8 | (cell & 255));
+}
+
+static uint16_t blended_cell(const struct lm_tile_fill *f, const struct blended *b, uint32_t row,
+                             uint32_t column)
+{
+    const uint16_t *height_dm = f->classes->height_dm;
+    uint32_t cell = b->cell[column];
+    if (b->lack_m_q14[column] != 0) {
+        const int32_t m_q14 = lm_k_height_m_q14(height_dm[cell & 15]) + b->lack_m_q14[column];
+        cell = (cell & ~15u) | code_of(height_dm, m_q14, draw_of(f, cell, row, column));
+    }
+    return cell_with(f, cell, (int32_t)cell >> 16);
+}
+
+static bool is_in_source(const struct lm_tile_fill *f, int32_t first, uint32_t point)
+{
+    const int32_t cell = (first + (int32_t)point - LM_TILE_BORDER) >> f->generations;
+    return cell >= 0 && cell < LM_TILE_CELLS;
+}
+
+/* From the north: whether a post is a gap hangs on cells to its south. */
 static void fill_row(struct lm_tile_fill *f, uint32_t row)
 {
     struct lm_tile *t = f->tile;
+    struct blended blended;
     const struct place at = place_of(f, f->row0, row);
-    for (uint32_t column = LM_TILE_POINTS; column-- > 0;) {
+    bool gap[LM_TILE_POINTS];
+    const bool has_none = find_gaps(t, row, gap);
+    const bool is_blended = has_none && f->generations > 0 && is_in_source(f, f->row0, row);
+    if (is_blended) {
+        blend_row(f, row, &blended);
+    }
+    for (uint32_t column = 0; column < LM_TILE_POINTS; column++) {
         struct lm_tile_point *p = &t->points[row][column];
-        const int32_t above_m_q6 = filled_m_q6(f, at, row, column) - t->base_m_q6;
+        const int32_t above_m_q6 = filled_m_q6(f, at, row, column, gap[column]) - t->base_m_q6;
         p->post = (uint16_t)fx_min_u32((uint32_t)above_m_q6 >> t->post_shift, UINT16_MAX);
         if (is_none(t, row, column)) {
-            p->cell = f->source->points[at.at][place_of(f, f->column0, column).at].cell;
+            const bool is_between = is_blended && is_in_source(f, f->column0, column);
+            const uint32_t nearest =
+                f->source->points[at.at][place_of(f, f->column0, column).at].cell;
+            p->cell =
+                is_between ? blended_cell(f, &blended, row, column) : cell_with(f, nearest, 0);
         }
     }
 }

@@ -401,6 +401,11 @@ static const struct lm_tile *find_nearest(const struct ref_db *db, unsigned leve
     return NULL;
 }
 
+static double gain_db(const struct ref_db *db, int class_index, unsigned level)
+{
+    return db->classes->entry[class_index].lod_gain_db_q8[level] / 256.0;
+}
+
 void ref_db_cell(const struct ref_db *db, unsigned level, struct ref_place place,
                  struct ref_bin *bin)
 {
@@ -412,7 +417,7 @@ void ref_db_cell(const struct ref_db *db, unsigned level, struct ref_place place
     bin->kind = db->classes->entry[bin->class_index].kind;
     bin->facing = db->classes->entry[bin->class_index].facing;
     bin->gamma_db =
-        (cell >> 8) / 2.0 - 80 + db->classes->entry[bin->class_index].lod_gain_db_q8[level] / 256.0;
+        (cell >> 8) / 2.0 - 80 + gain_db(db, bin->class_index, tile ? tile->lod : level);
     bin->height_m = db->classes->height_dm[cell & 15] / 10.0;
 }
 
@@ -425,10 +430,11 @@ static struct ref_corners corners_of(const struct ref_db *db, const struct lm_ti
     const double v = y - floor(y), u = x - floor(x);
     const struct lm_tile_point *low = &tile->points[(int)y][(int)x];
     const struct lm_tile_point *high = &tile->points[(int)y + 1][(int)x];
-    const bool has_crowns = cell_m < 3.5 && ref_db_cell_m(db, 0) > 3.5;
-    const double texels = has_crowns ? ldexp(1, (int)db->shift0 - 7) : 4;
+    const double map_m = ref_db_cell_m(db, tile->lod);
+    const bool has_crowns = cell_m < 3.5 && map_m > 3.5;
+    const double texels = has_crowns ? ldexp(1, (int)db->shift0 + tile->lod - 7) : 4;
     const double row = (g->r + g->north) * texels, column = (g->c + g->east) * texels;
-    const bool is_stepped = cell_m >= 1.5 * ref_db_cell_m(db, 0) / texels;
+    const bool is_stepped = cell_m >= 1.5 * map_m / texels;
     return (struct ref_corners){
         .cell = {low[0].cell, low[1].cell, high[0].cell, high[1].cell},
         .north = is_exact ? v : floor(v * 128) / 128,
@@ -444,9 +450,10 @@ void ref_db_ground(const struct ref_db *db, double cell_m, struct ref_place plac
 {
     struct grid_place g;
     const struct lm_tile *tile = find_nearest(db, 0, place, &g);
-    if (tile != NULL && tile->lod == 0 && cell_m < 2 * ref_db_cell_m(db, 0) / 3) {
+    if (tile != NULL && cell_m < 2 * ref_db_cell_m(db, tile->lod) / 3) {
         const struct ref_corners corners = corners_of(db, tile, &g, cell_m, is_exact);
         ref_blend_cells(db, &corners, bin);
+        bin->gamma_db += gain_db(db, bin->class_index, tile->lod);
     } else {
         ref_db_cell(db, ref_db_level_for(db, cell_m), place, bin);
     }

@@ -14,6 +14,9 @@
 
 enum { LM_GROWN_TEXEL_LOG2 = 7 };
 
+/* `grown_shift` of four texels a cell, where they are not those of crowns. */
+enum { LM_GROWN_CELL_SHIFT = 32 - LM_TILE_CELLS_LOG2 - 2 };
+
 /* Texels as in struct lm_k_blend. */
 extern const uint16_t lm_grown[LM_K_GROWN_WORDS];
 

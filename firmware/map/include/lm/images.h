@@ -9,7 +9,8 @@
  * The grid of all images is the same, because it hangs on the size of a cell alone. Hence a tile of
  * a level has the same place in each that has cells of that size. The view is what readers take for
  * the image: its LODs go from the finest cell of all to the coarsest. lm/tile_cache.h reads a tile
- * from the first image that has it, and fills its gaps from those behind.
+ * from the first image that has it, fits it to the view's gains (lm/tile_fit.h), and fills its gaps
+ * from those behind.
  *
  * Cells name their class by its number, so images have the same classes, or are refused. */
 #ifndef LM_IMAGES_H

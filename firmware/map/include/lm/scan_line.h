@@ -55,15 +55,17 @@ uint8_t lm_scan_lod(const struct lm_db *db, uint32_t cell_mm);
 /* Blend: how a line is read whose cells are shorter than the map's. Prepared once a picture. Law:
  * docs/EQUATIONS.md, "Finer than the map". */
 struct lm_scan_blend {
-    bool is_on, is_stepped;
+    bool is_on, is_stepped;                       /* of tiles of the finest LOD */
     uint32_t natural, crowned, flat, grown_shift; /* with is_stepped, as in struct lm_k_blend */
+    uint32_t trees, cell_mm;                      /* what other LODs are blended by */
     bool tells_runs; /* which tiles the line crosses is told, be is_on or not; false at first */
 };
 
 /* Prepare the blend for lines whose cells are cell_mm long, below 2^30. It is on if they are
- * shorter than 2/3 of a cell of LOD 0. Crowns are drawn if cells are shorter than 3.5 m, half a
- * crown, and the map's are not. What has grown is read by its nearest texel if they are 3/2 of one
- * or longer. `db` is borrowed for the call. Cost: 150 instructions. */
+ * shorter than 2/3 of the map's cell: that of the finest LOD, or where the map has no tile of it,
+ * of the one that answers. Crowns are drawn if cells are shorter than 3.5 m, half a crown, and the
+ * map's are not. What has grown is read by its nearest texel if they are 3/2 of one or longer. `db`
+ * is borrowed for the call. Cost: 150 instructions. */
 void lm_scan_blend_set(struct lm_scan_blend *b, const struct lm_db *db, uint32_t cell_mm);
 
 /* Read the first `cells` (1..LM_CELLS_MAX) entries along the path.
@@ -73,7 +75,9 @@ void lm_scan_blend_set(struct lm_scan_blend *b, const struct lm_db *db, uint32_t
  * - Points lie within 2^-10 of a cell of the path's, in lines of 1024 cells within 2^-9. The cell
  * is one of the tile that answers.
  * - If `blend` is on, tiles of the LOD itself are blended: lm_k_tile_blend says what `line` gets.
- *   An ancestor never is. `blend` may be NULL; it needs LOD 0.
+ *   So are ancestors of cells as much longer than the line's, where the map has nothing finer; not
+ *   those that answer for a tile which is late. `blend` may be NULL; one that is on needs the
+ *   finest LOD.
  *
  * `tiles` is changed: its clock, requests and counts. Cost: see docs/benchmarks.md; some 75
  * instructions for each tile that the line crosses. */

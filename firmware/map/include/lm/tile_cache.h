@@ -26,7 +26,8 @@
  * Flow of a request:
  *
  *     lm_tile_cache_get, _want --> ring of requests --> lm_tile_cache_service --> slot
- *                                                         | entry, record, unpacking
+ *                                                         | entry, record, unpacking;
+ *                                                         | of several images fit and fill
  *                                                         v
  *                                                       flash
  *
@@ -50,6 +51,7 @@
 #include "lm/config.h"
 #include "lm/db.h"
 #include "lm/tile_fill.h"
+#include "lm/tile_fit.h"
 #include "lm/tile_unpack.h"
 
 /* State of a slot. */
@@ -111,6 +113,7 @@ struct lm_tile_cache {
     uint32_t slot_count;  /* of the pool; at most LM_TILE_SLOTS_MAX */
     bool has_spare;       /* the pool has one tile more, for filling */
     bool is_top_resident; /* the coarsest LOD is, whole */
+    bool is_late;         /* the last look-up was answered though the map has a finer tile there */
     uint32_t clock;       /* look-ups so far */
     uint64_t now_us;      /* of the last service */
 
@@ -131,6 +134,8 @@ struct lm_tile_cache {
     bool has_gaps;              /* the slot's tile is there, and what is read fills its gaps */
     bool is_filling;            /* it is filled now, and no read is under way */
     struct lm_tile_fill fill;
+    bool is_fitting; /* what was read is fitted to the other images now, and no read is under way */
+    struct lm_tile_fit fit;
     struct lm_tile_entry entry;
     struct lm_flash_request *request; /* borrowed while it waits or is being read; NULL if none */
     bool is_reading_request;
@@ -257,10 +262,11 @@ static inline uint32_t lm_tile_cache_waiting(const struct lm_tile_cache *c)
  * with nothing taken, while another request waits or is being read. */
 bool lm_tile_cache_read(struct lm_tile_cache *c, struct lm_flash_request *request);
 
-/* Continue reading, with at most `reads` polls or starts of the flash or parts of the unpacking of
- * a compressed record. Never waits. Tiles that lm_tile_cache_get returned before may be evicted.
- * Cost: the check of a record for each tile that is complete, a pass over the slots for each tile
- * that is begun, and lm_tile_unpack_run for each part, which costs half a check. */
+/* Continue reading, with at most `reads` polls or starts of the flash, or parts of the unpacking of
+ * a compressed record, or of several images of fitting and filling a tile. Never waits. Tiles that
+ * lm_tile_cache_get returned before may be evicted. Cost: the check of a record for each tile that
+ * is complete, a pass over the slots for each tile that is begun, and lm_tile_unpack_run for each
+ * part, which costs half a check. */
 void lm_tile_cache_service(struct lm_tile_cache *c, uint64_t now_us, uint32_t reads);
 
 /* The images have changed, or the LODs of *db: these answer from now on; of none no tile is read.

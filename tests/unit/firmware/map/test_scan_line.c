@@ -68,7 +68,7 @@ static const struct lm_tile *find_tile(const struct world *w, uint32_t level, ui
  * that has it. `doubt` is how close the place is to a border between cells, in cells. */
 struct ground {
     int is_known;
-    uint32_t cell;
+    uint32_t cell, level;
     double elevation_m, roughness_m, doubt;
 };
 
@@ -94,6 +94,7 @@ static struct ground ground_at(const struct world *w, uint32_t level, double lat
                      nw = t->points[r + 1][c].post, ne = t->points[r + 1][c + 1].post;
         return (struct ground){.is_known = 1,
                                .cell = t->points[r][c].cell,
+                               .level = level,
                                .elevation_m = t->base_m_q6 / 64.0 +
                                               step_m * ((sw * (1 - u) + se * u) * (1 - v) +
                                                         (nw * (1 - u) + ne * u) * v),
@@ -197,7 +198,7 @@ static uint32_t scan_and_compare(struct world *w, uint8_t level, const struct lm
     lm_scan_line_prefetch(&w->map.tiles, level, p, cells);
     tiny_map_read_tiles(&w->map);
     const uint32_t misses = w->map.tiles.count.misses;
-    const struct lm_scan_blend nearest = {.tells_runs = true};
+    const struct lm_scan_blend nearest = {.tells_runs = true, .cell_mm = 1u << 29};
     lm_scan_line_run(&w->line, &w->map.tiles, level, &nearest, p, cells);
     assert_int_equal(w->map.tiles.count.misses, misses);
     compare_runs(w, level, p, cells);
@@ -353,6 +354,11 @@ TEST(what_is_not_resident_is_answered_by_the_nearest_ancestor)
     lm_scan_line_run(&w.line, &w.map.tiles, 0, NULL, &p, 150);
     assert_true(compare(&w, coarsest, &p, 150) == 150);
     assert_true(w.map.tiles.count.substituted > 0);
+    /* Though its cells are longer than the line's: what is late is not worth blending. */
+    struct lm_scan_blend blend;
+    lm_scan_blend_set(&blend, &w.map.db, 5000);
+    lm_scan_line_run(&w.line, &w.map.tiles, 0, &blend, &p, 150);
+    assert_true(compare(&w, coarsest, &p, 150) == 150);
     /* It has asked for what it missed; with the parents there too, they are not used. */
     tiny_map_read_tiles(&w.map);
     lm_scan_line_run(&w.line, &w.map.tiles, 0, NULL, &p, 150);
@@ -382,6 +388,7 @@ TEST(tiles_that_the_image_leaves_out_are_answered_by_their_parents)
     spec.rows = spec.columns = 6;
     spec.leave_out = leave_out_odd;
     open_world_with(&w, spec);
+    uint32_t blended[2] = {0};
     for (int azimuth = 0; azimuth < 360; azimuth += 24) {
         const struct lm_ground_path p = path_from(46, 11, azimuth, 5, 0);
         lm_scan_line_prefetch(&w.map.tiles, 1, &p, 150);
@@ -389,7 +396,19 @@ TEST(tiles_that_the_image_leaves_out_are_answered_by_their_parents)
         tiny_map_read_tiles(&w.map);
         lm_scan_line_run(&w.line, &w.map.tiles, 0, NULL, &p, 150);
         assert_true(compare(&w, 0, &p, 150) > 100);
+        /* Parents of cells so much longer than the line's are blended; the level itself is not. */
+        struct lm_scan_blend blend;
+        lm_scan_blend_set(&blend, &w.map.db, 5000);
+        lm_scan_line_run(&w.line, &w.map.tiles, 0, &blend, &p, 150);
+        for (uint32_t i = 0; i < 150; i++) {
+            const struct place at = place_at(&p, i);
+            const struct ground g = ground_at(&w, 0, at.latitude, at.longitude);
+            blended[g.level != 0] += g.is_known && w.line.cell[i] != g.cell;
+        }
     }
+    print_message("# %u cells of the level and %u of its parents' are others\n", blended[0],
+                  blended[1]);
+    assert_true(blended[0] < 10 && blended[1] > 100);
     tiny_map_close(&w.map);
 }
 

@@ -48,21 +48,26 @@ static void set_params(struct world *w)
 
 typedef double elevation_of(void *ctx, const struct tiny_place *p);
 
-static struct world *make_world_over(elevation_of *elevation_m, uint8_t shift0, double scale,
-                                     double latitude, double longitude)
+static struct world *make_world_of(struct tiny_spec spec, double scale)
 {
     struct world *w = calloc(1, sizeof *w);
     w->radar = lm_radar_default;
-    struct tiny_spec spec = tiny_spec_at(latitude, longitude);
     spec.cell = scene_cell;
-    spec.elevation_m = elevation_m;
     spec.ctx = &scale;
-    spec.shift0 = shift0;
     spec.rows = spec.columns = 9;
     tiny_map_open(&w->map, &spec, POOL_TILES);
     assert_int_equal(ref_db_open_memory(&w->ref, w->map.image.bytes, w->map.image.size, "scene"),
                      0);
     return w;
+}
+
+static struct world *make_world_over(elevation_of *elevation_m, uint8_t shift0, double scale,
+                                     double latitude, double longitude)
+{
+    struct tiny_spec spec = tiny_spec_at(latitude, longitude);
+    spec.elevation_m = elevation_m;
+    spec.shift0 = shift0;
+    return make_world_of(spec, scale);
 }
 
 static struct world *make_world(uint8_t shift0, double scale, double latitude, double longitude)
@@ -328,6 +333,35 @@ TEST(patches_of_long_cells_agree_with_the_reference)
     free_world(w);
     report("patches of long cells, aspect to tone on the same ground", &scores.stage);
     report("patches of long cells, whole", &scores.whole);
+    judge_stages(&scores.stage);
+    assert_true(scores.whole.beyond_half_db * 200 <= scores.whole.pixels);
+    assert_true(scores.whole.beyond_1_grey * 150 <= scores.whole.pixels);
+}
+
+static bool leave_out_every_other(void *ctx, uint8_t level, uint32_t row, uint32_t column)
+{
+    (void)ctx;
+    return level == 0 && (row + column) % 2 == 1;
+}
+
+/* Where the finest level has no tile, the next one's cells are blended: those of 9.5 m in the first
+ * two patches, of 19 and 38 m in the third. */
+TEST(patches_over_a_map_whose_finest_level_has_gaps_agree_with_the_reference)
+{
+    struct patch_scores scores = {0};
+    struct tiny_spec spec = tiny_spec_at(46, 11);
+    spec.elevation_m = scene_elevation_m;
+    spec.leave_out = leave_out_every_other;
+    struct world *w = make_world_of(spec, 1);
+    score_patch(w, 0, 5, 20000, 3000, &scores);
+    score_patch(w, 291, 3, 9000, 1500, &scores);
+    free_world(w);
+    spec.shift0 = 11;
+    w = make_world_of(spec, 4);
+    score_patch(w, 37, 15, 20000, 3000, &scores);
+    free_world(w);
+    report("patches over gaps, aspect to tone on the same ground", &scores.stage);
+    report("patches over gaps, whole", &scores.whole);
     judge_stages(&scores.stage);
     assert_true(scores.whole.beyond_half_db * 200 <= scores.whole.pixels);
     assert_true(scores.whole.beyond_1_grey * 150 <= scores.whole.pixels);
