@@ -160,6 +160,46 @@ TEST(targets_go_and_come_back_with_their_image)
     end(w);
 }
 
+/* The exercise's clock stands from now on. */
+static void stand(struct world *w)
+{
+    struct lm_exercise *x = &w->rig->unit.exercise;
+    x->is_told = true;
+    x->rate_q8 = 0;
+    x->told_us = 50000000;
+    x->anchor_us = x->heard_us = w->rig->now_us;
+    x->stale_us = UINT32_MAX;
+}
+
+/* Targets that the sweep shows, all of them of images that are there. */
+static uint32_t shown(const struct world *w)
+{
+    const struct lm_target_candidates *c = &w->rig->unit.picture.sector.candidates;
+    for (uint32_t i = 0; i < c->count; i++) {
+        assert_true(c->candidate[i].index < map_of(w)->target_set.count);
+    }
+    return c->count;
+}
+
+/* Of an exercise that stands one sweep is drawn over and over, of the same time and place: its
+ * targets would be those of before for ever. */
+TEST(a_sweep_that_stands_shows_the_targets_of_the_images_that_are_there)
+{
+    struct world *w = start();
+    stand(w);
+    run(w->rig, 2);
+    const uint32_t both = plane_sum(w->rig);
+    assert_int_equal(shown(w), IMAGES * EACH);
+    tell(w, 1, 0);
+    run(w->rig, 2);
+    assert_int_equal(shown(w), EACH);
+    assert_true(plane_sum(w->rig) != both);
+    tell(w, 1, w->parts[1].bytes);
+    run(w->rig, 2);
+    assert_int_equal(shown(w), IMAGES * EACH);
+    end(w);
+}
+
 TEST(a_track_goes_on_with_its_target_under_another_number_and_ends_with_its_image)
 {
     struct world *w = start();
