@@ -14,7 +14,8 @@ import sys
 import tempfile
 import time
 
-from osgeo import gdal
+import numpy as np
+from osgeo import gdal, osr
 
 import cluster
 
@@ -316,6 +317,46 @@ def coasts():
     check(name, len(right) == 2 and min(right) >= 590 and told.count(" 0 wrong elsewhere") == 2, told)
 
 
+def plain(path, side_px, pixel_m, heights):
+    """Terrain around 46 N 9 E, in UTM."""
+    raster = gdal.GetDriverByName("GTiff").Create(path, side_px, side_px, 1, gdal.GDT_Float32)
+    spatial = osr.SpatialReference()
+    spatial.ImportFromEPSG(32632)
+    raster.SetProjection(spatial.ExportToWkt())
+    half = side_px * pixel_m / 2
+    raster.SetGeoTransform((500000 - half, pixel_m, 0, 5093000 + half, 0, -pixel_m))
+    raster.GetRasterBand(1).SetNoDataValue(-9999)
+    raster.GetRasterBand(1).WriteArray(heights)
+
+
+def eased():
+    """A plateau at 700 m with a lake at 0 m and a hole without data, within a world at 500 m."""
+    over_m, pixel_m, side = 1500, 50, 160
+    heights = np.full((side, side), 700.0)
+    heights[8:20, 100:120] = 0
+    heights[100:110, 60:70] = -9999
+    plain("plateau.tif", side, pixel_m, heights)
+    plain("around.tif", 60, 500, np.full((60, 60), 500.0))
+    subprocess.run([BUILD + "/bin/landmass-db", "build", "--classes", CLASSES, "--terrain", "around.tif", "--cell", "150",
+                    "--out", "around.lmdb"], check=True, capture_output=True)
+    done = subprocess.run([sys.executable, "-B", WORLD + "/ease.py", "--terrain", "plateau.tif", "--onto", "around.lmdb",
+                           "--out", "eased.tif", "--over", str(over_m), "--db", BUILD + "/bin/landmass-db"],
+                          capture_output=True, text=True)
+    check("terrain is eased into a world", done.returncode == 0 and "200.0 m apart" in done.stdout, done.stdout + done.stderr)
+    made = gdal.Open("eased.tif").ReadAsArray()
+    has, middle = made > -9999, side // 2
+    check("at its border the terrain is the world's", np.abs(made[middle, [0, -1]] - 500).max() < 1, str(made[middle, :4]))
+    check("from so many metres on it is as it was", (made[middle, 31:38] == 700).all(), str(made[middle, 20:40]))
+    check("between, it rises evenly", (np.diff(made[middle, :32]) >= 0).all() and np.diff(made[middle, :32]).max() < 12)
+    check("a lake stays level", (made[8:20, 100:120] == 0).all())
+    check("a hole stays one, and the terrain around it is the world's",
+          (has == (heights > -9999)).all() and np.abs(made[99, 60:70] - 500).max() < 1, str(made[95:100, 65]))
+    subprocess.run(["gdal_translate", "-q", "-a_ullr", "600000", "5193000", "608000", "5185000", "plateau.tif", "far.tif"], check=True)
+    far = subprocess.run([sys.executable, "-B", WORLD + "/ease.py", "--terrain", "far.tif", "--onto", "around.lmdb",
+                          "--out", "far-eased.tif", "--db", BUILD + "/bin/landmass-db"], capture_output=True, text=True)
+    check("elsewhere it is refused", far.returncode != 0 and "ease: " in far.stderr and not os.path.exists("far-eased.tif"), far.stderr)
+
+
 def main():
     with tempfile.TemporaryDirectory(ignore_cleanup_errors=True) as work:
         os.chdir(work)
@@ -333,6 +374,7 @@ def main():
             else:
                 on_slurm(whole)
         coasts()
+        eased()
         os.chdir("/")
     print("1..%d" % len(CHECKS))
     sys.exit(0 if all(CHECKS) else 1)
