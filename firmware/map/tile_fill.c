@@ -13,6 +13,7 @@ enum {
     FINE_LOG2 = 8, /* places in a cell of the source are told to 1/256 */
     ROW_GROUPS = (LM_TILE_POINTS + LM_LANES - 1) / LM_LANES,
     ROW_ROOM = (ROW_GROUPS + 1) * LM_LANES,
+    WHOLE_ROWS = 3,  /* in a part, where no cell is to be filled */
     ANY_SCALE = -8,  /* of struct lm_tile_base: sea level and the least steps */
     STEPPED_MOST = 1 /* generations of which a cell of the tile has 3/2 texels or more */
 };
@@ -114,16 +115,18 @@ static int32_t filled_m_q6(const struct lm_tile_fill *f, struct place at, uint32
                   : f->base_m_q6 + (f->tile->points[row][column].post << f->post_shift);
 }
 
-static void measure_row(struct lm_tile_fill *f, uint32_t row)
+/* Returns whether the row has gaps. */
+static bool measure_row(struct lm_tile_fill *f, uint32_t row)
 {
     const struct place at = place_of(f, f->row0, row);
     bool gap[LM_TILE_POINTS];
-    find_gaps(f->tile, row, gap);
+    const bool has_none = find_gaps(f->tile, row, gap);
     for (uint32_t column = 0; column < LM_TILE_POINTS; column++) {
         const int32_t m_q6 = filled_m_q6(f, at, row, column, gap[column]);
         f->least_m_q6 = fx_min_i32(f->least_m_q6, m_q6);
         f->most_m_q6 = fx_max_i32(f->most_m_q6, m_q6);
     }
+    return has_none;
 }
 
 /* The base is lowered by whole steps, to 16 below 2^20 at most: what lm_tile_base_of makes of it
@@ -228,8 +231,9 @@ static bool is_in_source(const struct lm_tile_fill *f, int32_t first, uint32_t p
     return cell >= 0 && cell < LM_TILE_CELLS;
 }
 
-/* From the north: whether a post is a gap hangs on cells to its south. */
-static void fill_row(struct lm_tile_fill *f, uint32_t row)
+/* From the north: whether a post is a gap hangs on cells to its south. Returns whether there were
+ * cells to fill. */
+static bool fill_row(struct lm_tile_fill *f, uint32_t row)
 {
     struct lm_tile *t = f->tile;
     struct blended blended;
@@ -252,18 +256,19 @@ static void fill_row(struct lm_tile_fill *f, uint32_t row)
                 is_between ? blended_cell(f, &blended, row, column) : cell_with(f, nearest, 0);
         }
     }
+    return has_none;
 }
 
 int lm_tile_fill_run(struct lm_tile_fill *f)
 {
-    if (f->row < LM_TILE_POINTS) {
-        measure_row(f, f->row);
-    } else {
-        fill_row(f, 2 * LM_TILE_POINTS - 1 - f->row);
-    }
-    f->row++;
-    if (f->row == LM_TILE_POINTS) {
-        set_steps(f);
+    bool has_none = false;
+    for (uint32_t i = 0; i < WHOLE_ROWS && !has_none && f->row < 2 * LM_TILE_POINTS; i++) {
+        has_none = f->row < LM_TILE_POINTS ? measure_row(f, f->row)
+                                           : fill_row(f, 2 * LM_TILE_POINTS - 1 - f->row);
+        f->row++;
+        if (f->row == LM_TILE_POINTS) {
+            set_steps(f);
+        }
     }
     return f->row < 2 * LM_TILE_POINTS ? LM_BUSY : LM_OK;
 }

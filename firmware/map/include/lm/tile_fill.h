@@ -50,8 +50,9 @@ bool lm_tile_has_gaps(const struct lm_tile *tile);
 void lm_tile_fill_begin(struct lm_tile_fill *f, struct lm_tile *tile, const struct lm_tile *source,
                         uint32_t generations, const struct lm_classes *classes);
 
-/* Do one of 132 parts. Returns LM_BUSY: call again; or LM_OK: the tile is filled. Between the two
- * its posts mean nothing. Cost: some 4,000 instructions; 12,000 of one that is dear. */
+/* Do one of 132 parts at most: a row, or three that are whole. Returns LM_BUSY: call again; or
+ * LM_OK: the tile is filled. Between the two its posts mean nothing. Cost: some 4,000 instructions;
+ * 15,000 of one that is dear. */
 int lm_tile_fill_run(struct lm_tile_fill *f);
 
 /* True if the next part writes a row, for which a coarser source is blended. */
