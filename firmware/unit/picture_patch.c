@@ -6,8 +6,9 @@
 #include "picture_kind.h"
 
 enum {
-    ACQUIRE_US = 500000, /* longest wait for the tiles */
-    SAMPLES_A_STEP = 3,  /* lines sampled a step; one that needs more waits */
+    ACQUIRE_US = 500000,       /* longest wait for another tile */
+    ACQUIRE_MOST_US = 2000000, /* longest wait for all of them */
+    SAMPLES_A_STEP = 3,        /* lines sampled a step; one that needs more waits */
     /* Tiles are requested for every fourth line, eight lines a step. */
     LINES_APART = 4,
     PREFETCHES_A_STEP = 8
@@ -120,6 +121,8 @@ static enum lm_refusal start(struct lm_picture *p, const struct lm_sar_command *
     p->acquire.has_tiles = false;
     p->acquire.lines_asked_for = 0;
     p->acquire.until_us = now_us + ACQUIRE_US;
+    p->acquire.most_us = now_us + ACQUIRE_MOST_US;
+    p->acquire.tiles_read = map->tiles.count.tiles_read;
     return LM_REFUSED_NOT;
 }
 
@@ -161,10 +164,22 @@ static bool refresh_relief(struct lm_picture *p)
     return true;
 }
 
+/* While tiles come, wait for more: those that are late are rectangles of coarser ground. */
+static void wait_on(struct lm_picture *p, uint64_t now_us)
+{
+    const uint32_t tiles_read = p->lent.map->tiles.count.tiles_read;
+    if (p->acquire.tiles_read != tiles_read) {
+        const uint64_t until_us = now_us + ACQUIRE_US, most_us = p->acquire.most_us;
+        p->acquire.tiles_read = tiles_read;
+        p->acquire.until_us = until_us < most_us ? until_us : most_us;
+    }
+}
+
 static bool is_ready(struct lm_picture *p, uint64_t now_us)
 {
     struct lm_unit_map *map = p->lent.map;
     if (p->acquire.is_reading) {
+        wait_on(p, now_us);
         const bool is_late = now_us >= p->acquire.until_us;
         p->acquire.has_tiles |= p->acquire.lines_asked_for == lines_of(p) &&
                                 lm_tile_cache_is_idle(&map->tiles) &&

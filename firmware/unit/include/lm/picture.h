@@ -66,6 +66,8 @@ struct lm_picture {
         bool has_tiles;           /* all tiles and chips are there; detail may still be read */
         uint32_t lines_asked_for; /* the tiles of lines below this one were requested */
         uint64_t until_us;        /* end of the wait: lines are then drawn with the tiles at hand */
+        uint64_t most_us;         /* end of it, however many tiles come */
+        uint32_t tiles_read;      /* by the cache, when it was last put off */
     } acquire;
 
     struct lm_tone tone[LM_PICTURES];

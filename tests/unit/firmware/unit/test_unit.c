@@ -2,6 +2,7 @@
 #include "check.h"
 #include "unit_rig.h"
 
+#include <math.h>
 #include <string.h>
 
 TEST(a_good_flight_paints_a_sector_without_a_flag)
@@ -323,6 +324,41 @@ TEST(all_tiles_of_a_patch_are_there_before_its_first_line_a_few_lines_asked_for_
     assert_int_equal(u->picture.sar.line, u->picture.sar.lines);
     assert_int_equal(u->picture.coverage.cells_coarse, 0); /* no ancestor answered */
     free_rig(r);
+}
+
+/* Time from the command of a patch to the end of its reading, when a read of the flash is busy for
+ * so many polls. */
+static double reading_s(struct rig *r, uint32_t busy_polls)
+{
+    r->board.flash.busy_polls = busy_polls;
+    command(r, patch_from_afar);
+    const uint64_t from_us = r->now_us;
+    do {
+        run(r, 1.0 * STEP_US / 1e6);
+        assert_true(r->now_us < from_us + 3000000);
+    } while (r->unit.picture.acquire.is_reading);
+    return (double)(r->now_us - from_us) / 1e6;
+}
+
+TEST(a_patch_waits_for_its_tiles_as_long_as_they_come_but_not_for_ever)
+{
+    struct rig *r = start_rig();
+    const struct lm_unit *u = &r->unit;
+    const double slow_s = reading_s(r, 20);
+    run(r, 4);
+    assert_int_equal(u->picture.sar.line, u->picture.sar.lines);
+    assert_int_equal(u->picture.coverage.cells_coarse, 0);
+    free_rig(r);
+    r = start_rig();
+    const double slower_s = reading_s(r, 100);
+    free_rig(r);
+    r = start_rig();
+    const double hanging_s = reading_s(r, UINT32_MAX);
+    free_rig(r);
+    print_message("# read for %.3f, %.3f, %.3f s\n", slow_s, slower_s, hanging_s);
+    assert_true(slow_s > 0.5 && slow_s < 2);
+    assert_true(fabs(slower_s - 2) < 0.01);
+    assert_true(fabs(hanging_s - 0.5) < 0.01);
 }
 
 /* Found by tests/fuzz: 256 cells do not fit 183 rows, and were painted beyond the plane. */
