@@ -28,6 +28,7 @@ bool lm_line_add_targets(struct lm_line *line, const struct lm_range_grid *grid,
     const struct lm_target_horizon horizon = {line->lit.horizon, grid->tangent_bits};
     struct lm_target_line where = targets->where;
     where.clutter_db_q8 = line->lit.level_db_q8;
+    where.elevation_m_q14 = line->ground.elevation_m_q14;
     for (uint32_t i = 0; i < grid->cells; i++) {
         line->steady.level_db_q8[i] = LM_LEVEL_SHADOW;
     }

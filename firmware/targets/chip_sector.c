@@ -5,16 +5,16 @@
 #include "fx/mem.h"
 #include "fx/sat.h"
 #include "fx/trig.h"
+#include "lm/chip_slope.h"
 #include "lm/illumination.h"
 #include "lm/units.h"
 
 /* Map from pixels to lines and cells. Entry [0] is the middle of pixel (0, 0), [1] is the step of a
- * column, [2] the step of a row. `across` is BAM to the right of the line; `along` is from cell
- * `first`. */
+ * column, [2] the step of a row. `across` is BAM to the right of the line; `along` is from the
+ * middle of its cell 0. */
 struct pixel_map {
-    int64_t across[3], along_cells_q16[3]; /* [0] the first pixel, [1] a column, [2] a row */
-    int32_t first;
-    uint32_t cells; /* cells from there, 0..LM_CHIP_SPAN */
+    int64_t across[3], along_cells_q16[3];
+    int64_t origin_cells_q16; /* of the target, along */
 };
 
 /* Compute the map of a chip turned by `turn` about its origin:
@@ -43,39 +43,48 @@ static struct pixel_map pixel_map_of(const struct lm_chip_slot *slot, fx_bam_t t
         map.along_cells_q16[i] = y_q24[i] / line->cell_m_q8;
     }
     const uint32_t halves = slot->key.shift + 1u;
+    map.origin_cells_q16 =
+        ((int64_t)origin->range_m_q8 - line->first_m_q8) * 65536 / line->cell_m_q8;
     map.across[0] = (columns * map.across[1] + rows * map.across[2]) >> halves;
     map.along_cells_q16[0] =
-        (columns * map.along_cells_q16[1] + rows * map.along_cells_q16[2]) >> halves;
-    /* Cells from the middle of the line's cell 0 to the chip's origin. The chip's corner is at most
-     * 1.5 sides from it, whatever the turn and the origin's row. */
-    const int64_t origin_cells_q16 =
-        ((int64_t)origin->range_m_q8 - line->first_m_q8) * 65536 / line->cell_m_q8;
-    const int64_t reach_m_q16 = (int64_t)slot->side * 3 / 2 *
-                                (int64_t)(fx_abs_u32((int32_t)(pixel_m_q24 / line->cell_m_q8)));
-    const int64_t first_reached = (origin_cells_q16 - reach_m_q16) >> 16,
-                  end_reached = ((origin_cells_q16 + reach_m_q16) >> 16) + 2;
-    const int64_t first =
-        first_reached < (int64_t)line->first ? (int64_t)line->first : first_reached;
-    const int64_t end = end_reached > (int64_t)line->cells ? (int64_t)line->cells : end_reached;
-    map.first = (int32_t)first;
-    map.cells =
-        end > first ? (uint32_t)(end - first < LM_CHIP_SPAN ? end - first : LM_CHIP_SPAN) : 0;
-    map.along_cells_q16[0] += origin_cells_q16 - first * 65536;
+        map.origin_cells_q16 +
+        ((columns * map.along_cells_q16[1] + rows * map.along_cells_q16[2]) >> halves);
     return map;
 }
 
-/* Share `amount` between the two cells that a pixel lies between, by nearness. */
-static void share(uint32_t cell[LM_CHIP_SPAN + 1], uint32_t cells, int64_t along_cells_q16,
-                  uint32_t amount)
+/* What a chip has in one line: the weights of its pixels, in cells from `first` on, which may lie
+ * before the line or behind it. */
+struct profile {
+    int32_t first;
+    uint32_t cells; /* 0..LM_CHIP_SPAN */
+    uint32_t cell[LM_CHIP_SPAN + 1];
+};
+
+/* Set the cells that the pixels of a box lie between. A chip is within 2^21 cells of the line, and
+ * its pixels within 2^15 of its origin. */
+static void set_cells(struct profile *p, const struct lm_chip_box *box, const struct pixel_map *map)
 {
-    const int64_t whole = along_cells_q16 >> 16;
+    const int64_t along = map->along_cells_q16[1], beyond = map->along_cells_q16[2];
+    const int64_t columns = (int64_t)(box->column_end - box->column - 1) * along;
+    const int64_t rows = (int64_t)(box->row_end - box->row - 1) * beyond;
+    const int64_t corner = map->along_cells_q16[0] + box->column * along + box->row * beyond;
+    const int64_t least = corner + (columns < 0 ? columns : 0) + (rows < 0 ? rows : 0);
+    const int64_t most = corner + (columns > 0 ? columns : 0) + (rows > 0 ? rows : 0);
+    const int64_t cells = (most >> 16) - (least >> 16) + 2;
+    p->first = (int32_t)(least >> 16);
+    p->cells = box->row_end == 0 ? 0 : (uint32_t)(cells < LM_CHIP_SPAN ? cells : LM_CHIP_SPAN);
+    memset(p->cell, 0, sizeof p->cell);
+}
+
+/* Share `amount` between the two cells that a pixel lies between, by nearness. */
+static void share(struct profile *p, int64_t along_cells_q16, uint32_t amount)
+{
+    const int64_t whole = (along_cells_q16 >> 16) - p->first;
     const uint32_t beyond =
         (uint32_t)((uint64_t)amount * ((uint64_t)along_cells_q16 & 65535u) >> 16);
-    if (whole >= 0 && whole < (int64_t)cells) {
-        cell[whole] += amount - beyond;
-    }
-    if (whole >= -1 && whole + 1 < (int64_t)cells) {
-        cell[whole + 1] += beyond;
+    if (whole >= 0 && whole < (int64_t)p->cells) {
+        p->cell[whole] += amount - beyond;
+        p->cell[whole + 1] += beyond;
     }
 }
 
@@ -96,9 +105,9 @@ static uint32_t dark_q20(const struct lm_chip_slot *slot, uint32_t row, uint32_t
 static void gather(const struct lm_chip_slot *slot, const struct lm_chip_box *box,
                    const struct pixel_map *map,
                    uint32_t (*count)(const struct lm_chip_slot *, uint32_t, uint32_t), int32_t off,
-                   uint32_t width, uint32_t cell[LM_CHIP_SPAN + 1])
+                   uint32_t width, struct profile *p)
 {
-    memset(cell, 0, (LM_CHIP_SPAN + 1) * sizeof *cell);
+    set_cells(p, box, map);
     for (uint32_t row = box->row; row < box->row_end; row++) {
         int64_t across = map->across[0] + row * map->across[2] + box->column * map->across[1] - off;
         int64_t along_cells_q16 = map->along_cells_q16[0] + row * map->along_cells_q16[2] +
@@ -108,7 +117,7 @@ static void gather(const struct lm_chip_slot *slot, const struct lm_chip_box *bo
             const uint32_t amount = aside < (int64_t)width ? count(slot, row, column) : 0;
             if (amount != 0) {
                 const uint64_t weight = width - (uint64_t)aside;
-                share(cell, map->cells, along_cells_q16, (uint32_t)(amount * weight / width));
+                share(p, along_cells_q16, (uint32_t)(amount * weight / width));
             }
             across += map->across[1];
             along_cells_q16 += map->along_cells_q16[1];
@@ -128,35 +137,112 @@ static uint32_t pixels_a_cell_q16(const struct lm_chip_slot *slot,
     return ratio_q16 < 1u << 24 ? (uint32_t)ratio_q16 : 1u << 24;
 }
 
-/* Take from each cell the part of its level that lies in shadow. A cell's dark pixels add up to Q20
- * of pixels; by area they become a part of the cell. */
-static void darken(const struct pixel_map *map, const uint32_t cell[LM_CHIP_SPAN + 1],
-                   uint32_t ratio_q16, int16_t *level_db_q8)
+/* ---- shadow ---- */
+
+/* A line's ground, and the shadow that it would have if the ground were level. */
+struct shade {
+    const struct lm_target_line *line;
+    struct lm_chip_slope slope;
+    int64_t origin_cells_q16;
+    int32_t first;                         /* cell where the shadow begins */
+    uint32_t cells;                        /* of the shadow */
+    uint32_t before_q16[LM_CHIP_SPAN + 1]; /* dark part of all cells before this one */
+};
+
+/* Add the parts of cells up. A cell's dark pixels add up to Q20 of pixels; by area they become a
+ * part of the cell. All parts are below 2^25. */
+static void set_shade(struct shade *s, const struct lm_target_candidate *candidate,
+                      const struct lm_chip_sector_origin *origin, const struct lm_target_line *line,
+                      const struct pixel_map *map, const struct profile *dark)
 {
-    for (uint32_t i = 0; i < map->cells; i++) {
-        const uint64_t dark_q16 = (uint64_t)cell[i] * ratio_q16 >> 20;
-        if (dark_q16 >= 65536) {
-            level_db_q8[map->first + (int32_t)i] = LM_LEVEL_SHADOW;
-        } else if (dark_q16 != 0) {
-            int16_t *const at = &level_db_q8[map->first + (int32_t)i];
-            *at = fx_sat_i16(*at + fx_db_q8((uint32_t)(65536 - dark_q16)) - fx_db_q8(65536));
+    const struct lm_target_heights h = {line->height_m_q10, line->reference_m_q10};
+    const uint32_t ratio_q16 = pixels_a_cell_q16(candidate->chip, origin, line);
+    s->line = line;
+    s->origin_cells_q16 = map->origin_cells_q16;
+    s->first = dark->first;
+    s->cells = dark->cells;
+    s->before_q16[0] = 0;
+    for (uint32_t i = 0; i < dark->cells; i++) {
+        const uint64_t part_q16 = (uint64_t)dark->cell[i] * ratio_q16 >> 20;
+        s->before_q16[i + 1] = s->before_q16[i] + (uint32_t)(part_q16 < 65536 ? part_q16 : 65536);
+    }
+    lm_chip_slope_set(&s->slope, lm_m_q10_of_m_q6(candidate->elevation_m_q6),
+                      fx_max_u32(origin->range_m_q8, 1), line->cell_m_q8, &h);
+}
+
+/* Where the ray over the border between a cell and the one before it meets the level of the foot,
+ * in cells. Before the origin the ground counts as level, for the target stands on it. */
+static int64_t level_of_border_q16(const struct shade *s, uint32_t cell)
+{
+    const int64_t border_q16 = (int64_t)cell * 65536 - 32768;
+    const int32_t *const elevation_m_q14 = s->line->elevation_m_q14;
+    if (!elevation_m_q14 || border_q16 <= s->origin_cells_q16) {
+        return border_q16;
+    }
+    const uint32_t near = cell == 0 ? 0 : cell - 1, far = fx_min_u32(cell, s->line->cells - 1);
+    const int64_t both_m_q14 = (int64_t)elevation_m_q14[near] + elevation_m_q14[far];
+    const int32_t rise_m_q14 = fx_sat_i32(both_m_q14 / 2 - s->slope.foot_m_q14);
+    return border_q16 + lm_chip_slope_level_cells_q8(&s->slope, 0, rise_m_q14) * 256;
+}
+
+/* Dark part of all cells up to a place on the level of the foot. */
+static uint32_t dark_before_q16(const struct shade *s, int64_t level_q16)
+{
+    const int64_t past_q16 = level_q16 + 32768 - (int64_t)s->first * 65536;
+    if (past_q16 <= 0) {
+        return 0;
+    }
+    if (past_q16 >= (int64_t)s->cells << 16) {
+        return s->before_q16[s->cells];
+    }
+    const uint32_t i = (uint32_t)(past_q16 >> 16), on_q16 = (uint32_t)past_q16 & 65535;
+    const uint32_t part_q16 = s->before_q16[i + 1] - s->before_q16[i];
+    return s->before_q16[i] + (uint32_t)((uint64_t)part_q16 * on_q16 >> 16);
+}
+
+/* Take a part from a cell's level. */
+static int16_t darkened_db_q8(int16_t level_db_q8, uint64_t dark_q16)
+{
+    return dark_q16 >= 65536
+               ? LM_LEVEL_SHADOW
+               : fx_sat_i16(level_db_q8 + fx_db_q8((uint32_t)(65536 - dark_q16)) - fx_db_q8(65536));
+}
+
+/* Take from each cell the part of its level that lies in shadow: its share of what the rays over it
+ * meet at the level of the foot. A cell over which they do not go on is hidden by the ground. */
+static void darken(const struct shade *s, int16_t *level_db_q8)
+{
+    const int64_t origin = s->origin_cells_q16 >> 16;
+    const int64_t begin = s->first < origin ? s->first : origin;
+    const int64_t end_q16 = (int64_t)s->first * 65536 + ((int64_t)s->cells << 16) - 32768;
+    uint32_t i = begin < (int64_t)s->line->first ? s->line->first : (uint32_t)begin;
+    int64_t near_q16 = i < s->line->cells ? level_of_border_q16(s, i) : end_q16;
+    for (; i < s->line->cells && near_q16 < end_q16; i++) {
+        const int64_t far_q16 = level_of_border_q16(s, i + 1);
+        const uint32_t dark_q16 =
+            far_q16 > near_q16 ? dark_before_q16(s, far_q16) - dark_before_q16(s, near_q16) : 0;
+        if (dark_q16 != 0) {
+            level_db_q8[i] = darkened_db_q8(level_db_q8[i], ((uint64_t)dark_q16 << 16) /
+                                                                (uint64_t)(far_q16 - near_q16));
         }
+        near_q16 = far_q16;
     }
 }
 
+/* ---- the target itself ---- */
+
 /* A chip is the mean over many looks, as the clutter's level is: both take their speckle together.
  */
-static uint32_t brighten(const struct lm_chip_slot *slot, const struct pixel_map *map,
-                         const uint32_t cell[LM_CHIP_SPAN + 1], int32_t clutter_db_q8,
-                         int16_t *level_db_q8)
+static uint32_t brighten(const struct lm_chip_slot *slot, const struct lm_target_line *line,
+                         const struct profile *lit, int32_t clutter_db_q8, int16_t *level_db_q8)
 {
     const int32_t unit_q8 = fx_db_q8(1u << 31);
     uint32_t given = 0;
-    for (uint32_t i = 0; i < map->cells; i++) {
-        if (cell[i] != 0) {
-            const uint32_t at = (uint32_t)map->first + i;
+    for (uint32_t i = 0; i < lit->cells; i++) {
+        const int64_t at = (int64_t)lit->first + i;
+        if (lit->cell[i] != 0 && at >= (int64_t)line->first && at < (int64_t)line->cells) {
             const int32_t chip_db_q8 =
-                slot->total_dbsm_q8 + fx_db_q8(cell[i]) - unit_q8 - clutter_db_q8;
+                slot->total_dbsm_q8 + fx_db_q8(lit->cell[i]) - unit_q8 - clutter_db_q8;
             level_db_q8[at] = fx_sat_i16(fx_db_q8_sum_vec(level_db_q8[at], chip_db_q8));
             given++;
         }
@@ -169,11 +255,15 @@ uint32_t lm_chip_sector_add(const struct lm_target_candidate *candidate,
                             const struct lm_target_line *line, int32_t clutter_db_q8,
                             int16_t *level_db_q8)
 {
-    uint32_t cell[LM_CHIP_SPAN + 1];
+    struct profile profile;
     const struct lm_chip_slot *slot = candidate->chip;
     const struct pixel_map map = pixel_map_of(slot, candidate->chip_turn, origin, line);
-    gather(slot, &slot->dark, &map, dark_q20, origin->shadow_off_bam, line->width, cell);
-    darken(&map, cell, pixels_a_cell_q16(slot, origin, line), level_db_q8);
-    gather(slot, &slot->lit, &map, power_q31, origin->off_bam, line->width, cell);
-    return brighten(slot, &map, cell, clutter_db_q8, level_db_q8);
+    gather(slot, &slot->dark, &map, dark_q20, origin->shadow_off_bam, line->width, &profile);
+    if (profile.cells != 0) {
+        struct shade shade;
+        set_shade(&shade, candidate, origin, line, &map, &profile);
+        darken(&shade, level_db_q8);
+    }
+    gather(slot, &slot->lit, &map, power_q31, origin->off_bam, line->width, &profile);
+    return brighten(slot, line, &profile, clutter_db_q8, level_db_q8);
 }

@@ -1,6 +1,6 @@
 /* Chips of signatures: any pixels under any sound record, read as the unit reads them and laid into
- * a patch and a line from anywhere. The first numbers of the input are the record and the look, the
- * rest is the chip, over and over. */
+ * a patch and a line from anywhere, over rough ground. The first numbers of the input are the
+ * record and the look, the rest is the chip, over and over. */
 #include "fuzz.h"
 #include "lm/chip_sector.h"
 #include "lm/target_patch.h"
@@ -99,6 +99,17 @@ static void serve(struct world *w)
     FUZZ_ASSERT(!slot || slot->state == LM_CHIP_RESIDENT);
 }
 
+/* Ground that rises and falls by up to 45 degrees, as the chip has it. */
+static void make_ground(const struct world *w, int32_t elevation_m_q14[CELLS])
+{
+    elevation_m_q14[0] = 0;
+    for (uint32_t i = 1; i < CELLS; i++) {
+        elevation_m_q14[i] =
+            elevation_m_q14[i - 1] +
+            (int32_t)(w->cell_mm * 256 / 1000) * (w->chip.level[0][i % LM_CHIP_SIDE] - 128) / 2;
+    }
+}
+
 static void draw_patch(struct world *w)
 {
     const struct lm_patch_geometry g = {.centre = {w->target.latitude, w->target.longitude},
@@ -113,13 +124,9 @@ static void draw_patch(struct world *w)
                                         .wavelength_um = 31228,
                                         .across_mm_s = 200000,
                                         .dwell_ms = 4000};
-    /* Ground that rises and falls by up to 45 degrees, as the chip has it. */
-    static int32_t elevation_m_q14[CELLS];
+    int32_t elevation_m_q14[CELLS];
     int16_t level_q8[LM_CELLS_ROOM] = {0};
-    for (uint32_t i = 1; i < CELLS; i++) {
-        elevation_m_q14[i] = elevation_m_q14[i - 1] +
-                             (int32_t)g.cell_m_q8 * (w->chip.level[0][i % LM_CHIP_SIDE] - 128) / 2;
-    }
+    make_ground(w, elevation_m_q14);
     lm_target_patch_set(&w->points, &w->near, &g);
     for (uint32_t k = 0; k < LINES; k++) {
         lm_target_patch_lean(&w->points, k, elevation_m_q14, &g);
@@ -140,11 +147,14 @@ static void draw_line(struct world *w)
 {
     const struct lm_target_candidate *item = &w->near.candidate[0];
     const uint32_t cell_q8 = w->cell_mm * 256 / 1000;
+    int32_t elevation_m_q14[CELLS];
+    make_ground(w, elevation_m_q14);
     const struct lm_target_line line = {.width = 1 + w->look % (FX_BAM_180 / 8),
                                         .first_m_q8 = w->range_q8,
                                         .cell_m_q8 = cell_q8,
                                         .cells = CELLS,
-                                        .height_m_q10 = 3000 * 1024};
+                                        .height_m_q10 = 3000 * 1024,
+                                        .elevation_m_q14 = elevation_m_q14};
     const struct lm_chip_sector_origin spot = {
         .range_m_q8 = w->range_q8 + cell_q8 * (w->look % CELLS),
         .off_bam = (int32_t)(w->target.heading >> 8),

@@ -1,6 +1,6 @@
-/* Chip on a slope, in a patch: the chip shows its target on level ground, and this says where its
- * shadow and its pixels come to lie on the ground that is there. Source: docs/EQUATIONS.md,
- * "Signatures". No call fails.
+/* Chip on a slope: the chip shows its target on level ground, and this says where its shadow comes
+ * to lie on the ground that is there and, in a patch, where its pixels do. Source:
+ * docs/EQUATIONS.md, "Signatures". No call fails.
  *
  *     ray over the top  .
  *          top  |`.     `.                 The ray that meets the ground at P goes on to L, at the

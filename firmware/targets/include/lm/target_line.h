@@ -27,6 +27,8 @@ struct lm_target_line {
     uint32_t scan, pulse;   /* number of the sweep and of the line: they choose random draws */
     int16_t *clutter_db_q8; /* borrowed for the call: levels of the ground, which chips darken and
                                add to; NULL: those of the scatterers */
+    const int32_t *elevation_m_q14; /* borrowed for the call: of the ground in each cell, above mean
+                                       sea level; NULL: level, as high as each target's origin */
 };
 
 /* Horizon of a line, which hides targets. `horizon[i]` is the largest tangent at which a cell

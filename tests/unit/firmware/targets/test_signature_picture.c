@@ -362,6 +362,38 @@ TEST_WITH(the_lines_of_a_window_share_a_chip_without_loss, set_up, tear_down_sig
     assert_true(worst_dark < 0.06);
 }
 
+/* A ship's pixels are larger than the cells of a window, and its chip longer than LM_CHIP_SPAN of
+ * them from corner to corner; what is not empty fits. */
+TEST_WITH(a_chip_whose_pixels_are_larger_than_cells_is_shown_whole, set_up,
+          tear_down_signature_world)
+{
+    struct fixture *f = *state;
+    const double wide_m = 16, long_m = 4;
+    f->world.signature.pixel_mm = (uint32_t)(wide_m * 1000);
+    for (int k = 0; k < 8; k++) {
+        const struct lm_target t = target_beyond(range_m, 0, k * 45);
+        struct lm_target_candidates candidates;
+        double power = 0;
+        near_of(f, &t, true, &candidates);
+        for (int l = 0; l < LINES; l++) {
+            struct lm_target_line line = line_of(l);
+            int16_t level_q8[CELLS];
+            line.width *= (fx_bam_t)(wide_m / spacing_m);
+            line.azimuth = hs_bam(90) + (fx_bam_t)((l - LINES / 2) * (int32_t)line.width);
+            line.cell_m_q8 = (uint32_t)(long_m * 256);
+            line.first_m_q8 = (uint32_t)lround((range_m - CELLS / 2 * long_m) * 256);
+            for (int c = 0; c < CELLS; c++) {
+                level_q8[c] = -100 * 256;
+            }
+            lm_target_line_add(&candidates, &line, NULL, level_q8);
+            for (int c = 0; c < CELLS; c++) {
+                power += pow(10, level_q8[c] / 2560.0);
+            }
+        }
+        assert_true(fabs(10 * log10(power) + clutter_db(wide_m, long_m, range_m) - 22.5) < 0.2);
+    }
+}
+
 /* Lines that pass by a target are told from its slack: of the largest pixels, a chip's corners are
  * 1.1 km from the target. */
 TEST_WITH(the_slack_of_a_target_holds_the_corners_of_its_chip, set_up, tear_down_signature_world)

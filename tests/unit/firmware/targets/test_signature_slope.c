@@ -1,10 +1,12 @@
-/* Targets with a signature on ground that is not level, in a patch: where the shadow falls, against
- * rays, and where the pixels are displayed, against the heights of what they show. */
+/* Targets with a signature on ground that is not level: where the shadow falls in a patch and in a
+ * window, against rays, and where the pixels are displayed in a patch, against the heights of what
+ * they show. */
 #include "check.h"
 #include "reference/chip.h"
 #include "reference/reference.h"
 #include "signature_image.h"
 
+#include "lm/line.h"
 #include "lm/target_patch.h"
 
 #include <stdlib.h>
@@ -26,6 +28,7 @@ struct fixture {
     struct lm_target_patch points;
     int32_t elevation_m_q14[LINES][TRACED];
     int16_t level_q8[LINES][TRACED];
+    struct lm_line line; /* of a window */
 };
 
 static int set_up(void **state)
@@ -235,6 +238,142 @@ TEST_WITH(a_target_is_shaded_by_the_ray_over_it_uphill_and_downhill, set_up,
         }
     }
     assert_true(shaded > 100);
+}
+
+/* ---- shadow in a window ---- */
+
+/* Lines and cells of a metre around the same target, which is in the middle line. */
+enum { WINDOW_LINES = 25, WINDOW_CELLS = 160, ORIGIN = 40, BRIGHT_Q8 = 80 * 256 };
+
+static void find_in_window(struct fixture *f, const struct lm_target *t, struct lm_position radar,
+                           struct lm_target_candidates *candidates)
+{
+    const struct lm_target_set set = set_with_signature(&f->world, t, 1);
+    const struct lm_target_query scene = {.position = radar, .reach_m = 30000};
+    const struct lm_chip_query chips = {.centre = {t->latitude, t->longitude},
+                                        .reach_m = 500,
+                                        .radar = radar,
+                                        .heights = {(int32_t)height_m * 1024, 0},
+                                        .cell_mm = 1000,
+                                        .side_most = 32};
+    lm_target_candidates_select(candidates, &set, &scene);
+    lm_chips_choose(&f->world.chips, candidates, &chips);
+    assert_true(serve_chips(&f->world));
+}
+
+/* How much darker each cell of a line gets, so far to the right of the target, over open ground. */
+static void shade_window_line(struct fixture *f, const struct ground *ground, int right_m,
+                              double gain_db[WINDOW_CELLS])
+{
+    static const struct lm_target_candidates none;
+    const struct lm_target t = target_with_signature(46, 11, 0);
+    const struct lm_range_grid grid = {.cells = WINDOW_CELLS, .tangent_bits = 20};
+    const fx_bam_t width = (fx_bam_t)lround(4294967296.0 / (2 * acos(-1) * range_m));
+    struct lm_target_candidates candidates;
+    struct lm_geo_origin origin;
+    lm_geo_set_origin(&origin, (struct lm_position){t.latitude, t.longitude});
+    struct lm_line_targets targets = {
+        .candidates = &candidates,
+        .live = &none,
+        .where = {.position = lm_geo_direct(&origin, FX_BAM_DEG(270), (uint32_t)range_m * 256),
+                  .width = width,
+                  .first_m_q8 = ((uint32_t)range_m - ORIGIN) * 256,
+                  .cell_m_q8 = 256,
+                  .cells = WINDOW_CELLS,
+                  .height_m_q10 = (int32_t)height_m * 1024,
+                  .wavelength_um = X_BAND_UM}};
+    uint32_t distance_m_q8;
+    lm_geo_inverse(targets.where.position, origin.position, &distance_m_q8, &targets.where.azimuth);
+    targets.where.azimuth += (fx_bam_t)(right_m * (int32_t)width);
+    find_in_window(f, &t, targets.where.position, &candidates);
+    for (int i = 0; i < WINDOW_CELLS; i++) {
+        f->line.lit.level_db_q8[i] = BRIGHT_Q8; /* beside which the target is nothing */
+        f->line.lit.horizon[i] = -(1 << 30);
+        f->line.ground.elevation_m_q14[i] =
+            (int32_t)lround(16384 * rise_m(ground, right_m, i - ORIGIN));
+    }
+    (void)lm_line_add_targets(&f->line, &grid, &targets);
+    for (int i = 0; i < WINDOW_CELLS; i++) {
+        gain_db[i] = (f->line.lit.level_db_q8[i] - BRIGHT_Q8) / 256.0;
+    }
+}
+
+/* Every cell of a line against its own ray, but those within a cell and a half of the shadow's edge
+ * and those that the ground hides. Returns how many are dark. */
+static int judge_window_line(struct fixture *f, const struct ground *ground, int right_m)
+{
+    double gain_db[WINDOW_CELLS], highest_m = -1e9;
+    int dark = 0;
+    shade_window_line(f, ground, right_m, gain_db);
+    for (int i = 0; i + 1 < WINDOW_CELLS; i++) {
+        const double beyond_m = i - ORIGIN;
+        const double level_m =
+            ref_chip_level_m(height_m, range_m, beyond_m, rise_m(ground, right_m, beyond_m));
+        const double next_m = ref_chip_level_m(height_m, range_m, beyond_m + 1,
+                                               rise_m(ground, right_m, beyond_m + 1));
+        double margin_m;
+        const bool is_dark = is_in_shadow(right_m, level_m, &margin_m);
+        if (beyond_m > 0 && level_m >= highest_m && next_m > level_m &&
+            margin_m > 1.5 + (next_m - level_m) / 2) {
+            assert_true(is_dark ? gain_db[i] < -8 : gain_db[i] > -0.1);
+            dark += is_dark;
+        }
+        assert_true(beyond_m > -1 || gain_db[i] >= 0);
+        highest_m = beyond_m > 0 ? fmax(highest_m, level_m) : highest_m;
+    }
+    return dark;
+}
+
+TEST_WITH(in_a_window_too_a_shadow_ends_where_the_ray_meets_the_ground, set_up,
+          tear_down_signature_world)
+{
+    struct fixture *f = *state;
+    struct hs_rng r;
+    int judged = 0;
+    hs_rng_seed(&r, 5);
+    for (int n = 0; n < 200; n++) {
+        const struct ground ground = {.beyond = -0.25 + 0.9 * hs_rng_uniform(&r),
+                                      .right = -0.3 + 0.6 * hs_rng_uniform(&r),
+                                      .waves_m = hs_rng_uniform(&r),
+                                      .long_m = 10 + 40 * hs_rng_uniform(&r)};
+        for (int right_m = -WINDOW_LINES / 2; right_m <= WINDOW_LINES / 2; right_m++) {
+            judged += judge_window_line(f, &ground, right_m);
+        }
+    }
+    print_message("# %d dark cells away from the shadow's edge\n", judged);
+    assert_true(judged > 1000);
+}
+
+/* 11 m on level ground; the tangent as above. */
+TEST_WITH(in_a_window_too_a_shadow_is_shorter_uphill_and_longer_downhill, set_up,
+          tear_down_signature_world)
+{
+    static const double slopes[] = {0.6, 0.3, 0.1, 0, -0.1, -0.2};
+    struct fixture *f = *state;
+    for (int n = 0; n < 6; n++) {
+        const struct ground ground = {.beyond = slopes[n], .long_m = 1};
+        const double wanted_m = 11 * 0.2988 / (0.2988 + slopes[n]);
+        double gain_db[WINDOW_CELLS], found_m = 0;
+        shade_window_line(f, &ground, 0, gain_db);
+        for (int i = 0; i < WINDOW_CELLS; i++) {
+            found_m += 1 - pow(10, gain_db[i] / 10);
+        }
+        print_message("# slope %.1f: %.2f m, and %.2f m by the rays\n", slopes[n], found_m,
+                      wanted_m);
+        assert_true(fabs(found_m - wanted_m) < 0.05 * wanted_m);
+    }
+}
+
+TEST_WITH(in_a_window_a_shadow_on_ground_that_falls_away_ends_with_the_line, set_up,
+          tear_down_signature_world)
+{
+    struct fixture *f = *state;
+    const struct ground ground = {.beyond = -0.4, .long_m = 1};
+    double gain_db[WINDOW_CELLS];
+    shade_window_line(f, &ground, 0, gain_db);
+    for (int i = 0; i < WINDOW_CELLS; i++) {
+        assert_true(gain_db[i] == 0 || i > ORIGIN);
+    }
 }
 
 /* ---- layover ---- */
