@@ -119,6 +119,66 @@ TEST(exponential_ground_returns_something_at_flat_angles)
     assert_true(fabs(flat_db + 28.1) < 0.1 && fabs(gaussian_db + 69.9) < 0.1);
 }
 
+/* The mean of exp(-2 i k z cos t) over heights z of a normal distribution, by Simpson's rule: what
+ * a rough mirror sends on in phase, as each place's way is 2 z cos t shorter. */
+static double complex mean_phasor(double height_m, double wavelength_m, double theta)
+{
+    enum { STEPS = 4000 };
+    const double reach_m = 8 * height_m, step_m = 2 * reach_m / STEPS;
+    double complex sum = 0;
+    double weights = 0;
+    for (int i = 0; i <= STEPS; i++) {
+        const double z = i * step_m - reach_m, x = z / height_m;
+        const double weight = (i == 0 || i == STEPS ? 1 : i % 2 ? 4 : 2) * exp(-x * x / 2);
+        sum += weight * cexp(-4 * pi * I * z * cos(theta) / wavelength_m);
+        weights += weight;
+    }
+    return sum / weights;
+}
+
+/* In shares of power, as a field, and as a pair of fields. */
+TEST(roughness_takes_from_a_mirror_what_its_heights_take_from_the_phase)
+{
+    struct reflect_law rough = {.kind = REFLECT_SPM_HH, .wavelength_m = 0.03125};
+    for (double height_m = 0.0005; height_m < 0.03; height_m *= 2) {
+        rough.materials[0] = soil;
+        rough.materials[0].rms_height_m = height_m;
+        for (double t = 0; t < 90; t += 5) {
+            const struct trace_record r = {.incidence_rad = (float)rad(t),
+                                           .echo_rad = (float)rad(t),
+                                           .turn_rad = (float)rad(2 * t)};
+            const double left = creal(mean_phasor(height_m, 0.03125, rad(t)));
+            const double complex smooth = reflect_fresnel_hh(6 - 1 * I, rad(t));
+            const double power = pow(cabs(smooth) * left, 2);
+            assert_true(fabs((double)reflect_record(&rough, &r).specular - power) < 1e-6);
+            assert_true(cabs(reflect_field_of(&rough, &r).specular - smooth * left) < 1e-6);
+            assert_true(cabs(reflect_pair_of(&rough, &r).hh - smooth * left) < 1e-6);
+        }
+    }
+}
+
+/* Rayleigh's criterion: at a height of wavelength / (8 cos t) ways differ by a quarter of a turn,
+ * and a spread of heights as large leaves exp(-pi^2 / 4) of the power, -10.7 dB, in any direction.
+ * Where 4 pi s cos t / wavelength is 1 the loss is 4.34 dB. */
+TEST(a_surface_is_rough_where_rayleigh_says_so)
+{
+    struct reflect_law rough = {.kind = REFLECT_SPM_VV, .wavelength_m = 0.03125};
+    for (double t = 0; t < 85; t += 5) {
+        const struct trace_record r = {.incidence_rad = (float)rad(t),
+                                       .echo_rad = (float)rad(t),
+                                       .turn_rad = (float)rad(2 * t)};
+        const double smooth = pow(cabs(reflect_fresnel_vv(6 - 1 * I, rad(t))), 2);
+        const double heights_m[2] = {0.03125 / (8 * cos(rad(t))), 0.03125 / (4 * pi * cos(rad(t)))};
+        const double lost_db[2] = {10.72, 4.343};
+        for (int i = 0; i < 2; i++) {
+            rough.materials[0] = soil;
+            rough.materials[0].rms_height_m = heights_m[i];
+            const double left = (double)reflect_record(&rough, &r).specular / smooth;
+            assert_true(fabs(10 * log10(left) + lost_db[i]) < 0.01);
+        }
+    }
+}
+
 /* The azimuth is found again from the three angles of a record. */
 TEST(the_turn_gives_back_the_azimuth)
 {
