@@ -2,6 +2,7 @@
 
 #include "hs/error.h"
 
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -149,6 +150,42 @@ int nm_netem_forward(struct nm_netem *em, const double *weights, const struct nm
     return 0;
 }
 
+/* ---- what is handed on ---- */
+
+/* Rows whose specular outputs are held; those of the last reflections go nowhere, and do no harm.
+ */
+static int held_rows(const struct nm_architecture *a, const struct nm_paths *paths)
+{
+    return is_chained(a) && a->network.last == NM_SIGMOID ? paths->rows[sp_by(a)] : 0;
+}
+
+/* A little off the ends, which rounding reaches. */
+static double held(double output)
+{
+    return fmin(fmax(output, 1e-12), 1 - 1e-12);
+}
+
+double nm_netem_hold(const struct nm_netem *em, const struct nm_paths *paths)
+{
+    const int rows = held_rows(em->architecture, paths);
+    double sum = 0;
+    for (int r = 0; r < rows; r++) {
+        const double o = held(em->out[NM_SP][r]);
+        sum -= log(4 * o * (1 - o)) / rows;
+    }
+    return sum;
+}
+
+/* Its derivatives, times its weight. */
+static void add_hold(struct nm_netem *em, const struct nm_paths *paths)
+{
+    const int rows = em->hold > 0 ? held_rows(em->architecture, paths) : 0;
+    for (int r = 0; r < rows; r++) {
+        const double o = held(em->out[NM_SP][r]);
+        em->d_out[NM_SP][r] += em->hold * (2 * o - 1) / (o * (1 - o)) / rows;
+    }
+}
+
 /* ---- backward ---- */
 
 /* The derivatives by the outputs of a span to where the network wants them. */
@@ -200,6 +237,7 @@ void nm_netem_backward(struct nm_netem *em, const double *weights, const struct 
     memset(em->d_out[NM_BK], 0, (size_t)paths->rows[NM_BK] * sizeof **em->d_out);
     memset(em->d_out[NM_SP], 0, (size_t)paths->rows[sp_by(a)] * sizeof **em->d_out);
     nm_paths_backward(paths, c, d_image, em->d_out[NM_BK], em->d_out[NM_SP]);
+    add_hold(em, paths);
     for (int b = span_count(a) - 1; b >= 0; b--) {
         for (int d = 0; d < asked(a); d++) {
             span_backward(em, weights, paths, d, span_of(a, paths, d, b), b > 0, gradient);

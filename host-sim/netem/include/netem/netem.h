@@ -12,6 +12,7 @@ struct nm_netem {
     double *activity[NM_DIRECTIONS], *delta[NM_DIRECTIONS];
     double *out[NM_DIRECTIONS], *d_out[NM_DIRECTIONS]; /* by row: outputs and their derivatives */
     size_t capacity[NM_DIRECTIONS];                    /* rows */
+    double hold; /* weight of nm_netem_hold() in nm_netem_backward(); 0: none */
 };
 
 /* Coefficients of all rows of `paths` from `weights` (nm_architecture_size numbers). They stay good
@@ -20,8 +21,15 @@ struct nm_netem {
 int nm_netem_forward(struct nm_netem *em, const double *weights, const struct nm_paths *paths,
                      struct nm_coefficients *coefficients);
 
-/* After it: adds to `gradient` what the derivatives of the loss by the picture of step 4 come to.
- */
+/* What holds intensities that are handed on away from both ends of their sigmoid, where it has no
+ * slope: the mean of -ln(4 o (1 - o)) over them, 0 at one half. No picture shows what is handed on
+ * (docs/netem.md), so that a share of all alike drifts until it stays at an end, the same for every
+ * reflection, and nothing brings it back. After nm_netem_forward(); 0 for outputs of other units,
+ * or where coefficients are multiplied. */
+double nm_netem_hold(const struct nm_netem *em, const struct nm_paths *paths);
+
+/* After nm_netem_forward(): adds to `gradient` what the derivatives of the loss by the picture of
+ * step 4 come to, and those of `hold` times nm_netem_hold(). */
 void nm_netem_backward(struct nm_netem *em, const double *weights, const struct nm_paths *paths,
                        const struct nm_coefficients *coefficients, const double *d_image,
                        double *gradient);

@@ -178,6 +178,49 @@ TEST(every_group_of_every_network_has_the_right_gradient)
     }
 }
 
+/* The hold alone: the loss has no part in it. */
+static double hold_of(struct bench *b)
+{
+    assert_int_equal(nm_simulate_picture(&b->simulator, &b->model, &b->paths), 0);
+    return nm_netem_hold(&b->simulator.em, &b->paths);
+}
+
+TEST(what_holds_intensities_has_the_right_gradient)
+{
+    static const char *const names[] = {"EP2", "EP5", "EP8"};
+    for (size_t n = 0; n < sizeof names / sizeof names[0]; n++) {
+        struct bench b = {.kind = NM_MSE};
+        open_bench(&b, nm_architecture_find(names[n], NM_BY_INTENSITY));
+        assert_true(hold_of(&b) > 0);
+        memset(b.simulator.d_picture, 0, CELLS * CELLS * sizeof *b.simulator.d_picture);
+        b.simulator.em.hold = 2;
+        nm_simulator_backward_picture(&b.simulator, &b.model, &b.paths, b.gradient);
+        const size_t count = nm_architecture_size(b.model.architecture);
+        double most = 0;
+        for (size_t i = 0; i < count; i++) {
+            most = fmax(most, fabs(b.gradient[i]));
+        }
+        for (size_t i = 0; i < count; i += count / 50) {
+            const double kept = b.model.values[i], step = 1e-6;
+            b.model.values[i] = kept + step;
+            const double above = hold_of(&b);
+            b.model.values[i] = kept - step;
+            const double slope = (above - hold_of(&b)) / (2 * step);
+            b.model.values[i] = kept;
+            assert_true(fabs(2 * slope - b.gradient[i]) < 1e-4 * most);
+        }
+        close_bench(&b);
+    }
+}
+
+TEST(coefficients_are_not_held)
+{
+    struct bench b = {.kind = NM_MSE};
+    open_bench(&b, coefficient("EP8"));
+    assert_true(hold_of(&b) == 0);
+    close_bench(&b);
+}
+
 /* One ray after the other, each network asked by itself with what the one before gave. */
 static void draw_ray_by_ray(struct bench *b, double *image)
 {
