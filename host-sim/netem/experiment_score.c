@@ -444,14 +444,15 @@ static void report_summary(const struct nm_summary *s, const char *what)
 /* What needs no simulator: a score that is no better says nothing. */
 static void print_nulls(const struct nm_summary *s)
 {
-    static const char *const titles[NM_NULLS] = {"flat picture", "mean chip", "nearest chip"};
+    static const char *const titles[NM_NULLS] = {"flat picture", "mean chip", "nearest chip",
+                                                 "chips smoothed"};
     for (int n = 0; n < NM_NULLS; n++) {
         printf("  null model, %-12s   mse %.6f   ssim %.4f   cw-ssim %.4f\n", titles[n],
                s->nulls[n].mse, s->nulls[n].ssim, s->nulls[n].cw_ssim);
     }
     printf(
-        "  of training chips: their mean everywhere, their mean picture, and the real one of "
-        "the\n  nearest other azimuth, %.1f degrees away\n",
+        "  of training chips: their mean everywhere, their mean picture, the real one of the\n"
+        "  nearest other azimuth, %.1f degrees away, and the mean of those about the azimuth\n",
         s->near_deg);
 }
 

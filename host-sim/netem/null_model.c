@@ -6,7 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-const char *const nm_null_names[NM_NULLS] = {"flat", "mean_chip", "nearest_chip"};
+const char *const nm_null_names[NM_NULLS] = {"flat", "mean_chip", "nearest_chip", "smoothed_chips"};
 
 void nm_brighten(const double *pixels, int count, double gain, double *brighter)
 {
@@ -66,6 +66,29 @@ static void take_flat(const double *mean, int count, double *flat)
     }
 }
 
+/* The mean of the training chips about an azimuth, without the chip itself. */
+static void take_smoothed(const struct nm_samples *training, const struct nm_sample *chip, int side,
+                          double *smoothed, double *scratch)
+{
+    static const double width_deg = 8;
+    double weights = 0;
+    memset(smoothed, 0, (size_t)(side * side) * sizeof *smoothed);
+    for (int i = 0; i < training->count; i++) {
+        const struct nm_sample *s = &training->items[i];
+        const double off = apart_deg(s->azimuth_deg, chip->azimuth_deg) / width_deg;
+        /* Were all of them far away, the nearest would count. */
+        const double weight = s == chip ? 0 : exp(-off * off / 2) + 1e-300;
+        nm_picture_cut(&s->real, s->origin, side, scratch);
+        weights += weight;
+        for (int k = 0; k < side * side; k++) {
+            smoothed[k] += weight * scratch[k];
+        }
+    }
+    for (int k = 0; k < side * side; k++) {
+        smoothed[k] /= weights > 0 ? weights : 1;
+    }
+}
+
 static void add(struct nm_score *sum, const struct nm_score *score, int count)
 {
     sum->mse += score->mse / count;
@@ -73,7 +96,7 @@ static void add(struct nm_score *sum, const struct nm_score *score, int count)
     sum->cw_ssim += score->cw_ssim / count;
 }
 
-/* One chip beside the three pictures. */
+/* One chip beside the pictures. */
 static int score_chip(struct nm_training *t, const struct nm_sample *chip, double *pictures,
                       double *cut, int count, struct nm_score scores[NM_NULLS])
 {
@@ -107,6 +130,7 @@ static int score_all(struct nm_training *t, const struct nm_samples *training,
         near = near ? near : &training->items[0];
         sum_deg += apart_deg(near->azimuth_deg, chip->azimuth_deg);
         nm_picture_cut(&near->real, near->origin, side, pictures + NM_NULL_NEAREST * pixels);
+        take_smoothed(training, chip, side, pictures + NM_NULL_SMOOTHED * pixels, cut);
         result = score_chip(t, chip, pictures, cut, chips->count, scores);
     }
     if (near_deg) {

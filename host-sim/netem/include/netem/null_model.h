@@ -9,9 +9,11 @@
 #include <stdbool.h>
 
 enum nm_null_kind {
-    NM_NULL_FLAT,    /* the mean of all pixels of the training chips, everywhere */
-    NM_NULL_MEAN,    /* the mean of the training chips */
-    NM_NULL_NEAREST, /* the training chip of the nearest azimuth that is another one */
+    NM_NULL_FLAT,     /* the mean of all pixels of the training chips, everywhere */
+    NM_NULL_MEAN,     /* the mean of the training chips */
+    NM_NULL_NEAREST,  /* the training chip of the nearest azimuth that is another one */
+    NM_NULL_SMOOTHED, /* the other training chips' mean, weighted by exp(-(off / 8 degrees)^2 / 2):
+                         the target itself, with little speckle left */
     NM_NULLS
 };
 extern const char *const nm_null_names[NM_NULLS];

@@ -3,6 +3,7 @@
 #include "check.h"
 #include "facets.h"
 #include "netem/model_file.h"
+#include "netem/null_model.h"
 #include "netem/surfaces.h"
 #include "support.h"
 
@@ -585,5 +586,32 @@ TEST(a_model_file_cut_short_is_refused)
     free(whole);
     close(fd);
     unlink(path);
+    close_world(&w);
+}
+
+/* Chips of one grey each, at 0, 16 and 180 degrees: one at 4 degrees sees those two by their
+ * distance, and itself, if it is one of them, never. */
+TEST(smoothed_chips_are_the_mean_about_the_azimuth)
+{
+    struct world w;
+    struct nm_score scores[NM_NULLS];
+    struct nm_plan plan = short_plan;
+    plan.reach_px = 0;
+    open_world(&w, &plan, "EP8", 0);
+    static const double azimuths[] = {0, 16, 180, 4}, greys[] = {0.2, 0.5, 0.9, 0.4};
+    for (int i = 0; i < 4; i++) {
+        w.samples[i].azimuth_deg = azimuths[i];
+        for (int k = 0; k < SIDE * SIDE; k++) {
+            w.samples[i].real.pixels[k] = greys[i];
+        }
+    }
+    const double near = exp(-0.125), far = exp(-1.125);
+    const double expected = (near * 0.2 + far * 0.5) / (near + far) - 0.4;
+    const struct nm_samples chip = {w.samples + 3, 1};
+    for (int with_itself = 0; with_itself < 2; with_itself++) {
+        const struct nm_samples training = {w.samples, 3 + with_itself};
+        assert_int_equal(nm_null_scores(w.training, &training, &chip, scores, NULL), 0);
+        assert_true(fabs(scores[NM_NULL_SMOOTHED].mse - expected * expected) < 1e-12);
+    }
     close_world(&w);
 }
