@@ -32,9 +32,11 @@ const char *const nm_connection_names[NM_CONNECTIONS] = {"coefficient", "intensi
              NM_AS_NUMBER,                                                                         \
              {NM_INPUTS + (more), 4, {32, 64, 32, 1}, NM_SIGMOID}},                                \
             {"EP8", NM_TWO_NETWORKS, c, NM_AS_NUMBER, SIX(NM_INPUTS + (more))},                    \
-            {"EP9", NM_TWO_NETWORKS, c, NM_AS_NAME, SIX(NM_OWN_INPUTS + (more))},                  \
+            {"EP9", NM_TWO_NETWORKS, c, NM_AS_NAME, SIX(NM_ANGLE_INPUTS + NM_FEW_NAMES + (more))}, \
             {"EP10", NM_TWO_NETWORKS, c, NM_AS_SURFACE,                                            \
              SIX(NM_ANGLE_INPUTS + NM_SURFACE_INPUTS + (more))},                                   \
+            {"EP11", NM_TWO_NETWORKS, c, NM_AS_NAME,                                               \
+             SIX(NM_ANGLE_INPUTS + NM_MANY_NAMES + (more))},                                       \
     }
 
 const struct nm_architecture nm_architectures[NM_CONNECTIONS][NM_ARCHITECTURES] = {
@@ -50,6 +52,13 @@ const struct nm_architecture *nm_architecture_find(const char *name, enum nm_con
         }
     }
     return NULL;
+}
+
+uint32_t nm_architecture_names(const struct nm_architecture *a)
+{
+    const int chained = a->connection == NM_BY_INTENSITY ? 1 : 0;
+    return a->material == NM_AS_NAME ? (uint32_t)(a->network.inputs - NM_ANGLE_INPUTS - chained)
+                                     : TRACE_MATERIALS_MAX;
 }
 
 size_t nm_architecture_size(const struct nm_architecture *a)

@@ -24,6 +24,17 @@ static int take_materials(struct nm_experiment *e, bool has_surfaces)
                : 0;
 }
 
+/* Networks that go by names have an input for each. */
+static int check_names(const struct nm_experiment *e, const struct nm_architecture *a)
+{
+    const uint32_t count = e->materials.count;
+    return !a || count <= nm_architecture_names(a)
+               ? 0
+               : hs_error(e->settings.setup.model, "train EP11, or give fewer --zones",
+                          "has %u materials, and %s knows %u", count, a->name,
+                          nm_architecture_names(a));
+}
+
 int nm_experiment_open(struct nm_experiment *e, const struct nm_settings *settings,
                        double lowest_depression_deg)
 {
@@ -35,7 +46,8 @@ int nm_experiment_open(struct nm_experiment *e, const struct nm_settings *settin
     e->view.known = &e->materials;
     const struct nm_architecture *a =
         nm_architecture_find(settings->architecture, e->view.connection);
-    const int result = take_materials(e, a && a->material == NM_AS_SURFACE);
+    int result = take_materials(e, a && a->material == NM_AS_SURFACE);
+    result = result == 0 ? check_names(e, a) : result;
     if (result != 0) {
         nm_target_view_close(&e->view);
     }

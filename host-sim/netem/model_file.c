@@ -348,6 +348,10 @@ static int read_head(struct db_text_file *f, const struct nm_architecture **arch
         ((*architecture)->material == NM_AS_SURFACE && read_surfaces(f, materials) != 0)) {
         return -1;
     }
+    if (materials->count > nm_architecture_names(*architecture)) {
+        return db_text_error(f, remedy, "`materials` has more names than %s knows",
+                             (*architecture)->name);
+    }
     return read_plan(f, plan);
 }
 

@@ -121,7 +121,7 @@ static void own_features(const struct nm_architecture *a, const struct nm_reflec
         surface_features(&r->surface, features);
         return;
     }
-    memset(features, 0, TRACE_MATERIALS_MAX * sizeof *features);
+    memset(features, 0, nm_architecture_names(a) * sizeof *features);
     features[r->material] = one;
 }
 

@@ -99,16 +99,18 @@ static void add_fan(struct mesh *to, const struct polygon *p, uint32_t material)
 }
 
 /* TRACE_MATERIALS_MAX when there is no room: one is left for the ground. */
-static uint32_t name_zone(struct mesh *to, const char *material, const struct zone *at)
+static uint32_t name_zone(struct mesh *to, const char *material, const struct zone *at,
+                          bool has_sides)
 {
     char name[TRACE_NAME_SIZE + 16];
-    snprintf(name, sizeof name, "%s.%d%d%d", material, at->along + 1, at->aside + 1, at->high + 1);
+    snprintf(name, sizeof name, "%s.%d%d%d%s", material, at->along + 1, at->aside + 1, at->high + 1,
+             has_sides && at->left < 0 ? "r" : "");
     const uint32_t number = mesh_material(to, name);
     return number < TRACE_MATERIALS_MAX - 1 ? number : TRACE_MATERIALS_MAX;
 }
 
 static int add_piece(const struct mesh *m, const struct mesh_triangle *t, const struct side *sides,
-                     const struct zone *at, struct mesh *to)
+                     const struct zone *at, bool has_sides, struct mesh *to)
 {
     struct polygon p = {.count = 3};
     for (int i = 0; i < 3; i++) {
@@ -120,7 +122,7 @@ static int add_piece(const struct mesh *m, const struct mesh_triangle *t, const 
     if (p.count < 3) {
         return 0;
     }
-    const uint32_t material = name_zone(to, m->materials[t->material], at);
+    const uint32_t material = name_zone(to, m->materials[t->material], at, has_sides);
     if (material == TRACE_MATERIALS_MAX) {
         return -1;
     }
@@ -136,7 +138,7 @@ static int add_zone(const struct mesh *m, const struct mesh_zones *z, const stru
     mesh_bounds(m, &low, &high);
     sides_of(z, at, low, high, sides);
     for (uint32_t i = 0; i < m->triangle_count; i++) {
-        if (add_piece(m, &m->triangles[i], sides, at, to) != 0) {
+        if (add_piece(m, &m->triangles[i], sides, at, z->has_sides, to) != 0) {
             return -1;
         }
     }

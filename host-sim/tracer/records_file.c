@@ -27,7 +27,7 @@ struct file_head {
     uint32_t material_count, bounce_count;
     uint32_t record_count[TRACE_BOUNCES_MAX];
     uint32_t record_crc[TRACE_BOUNCES_MAX];
-    char materials[TRACE_MATERIALS_MAX][TRACE_NAME_SIZE];
+    char materials[TRACE_FILE_MATERIALS_MAX][TRACE_NAME_SIZE];
     double distance_m, receiver_azimuth_deg, receiver_depression_deg, receiver_distance_m;
     uint32_t is_apart;
     uint8_t reserved[72];
@@ -87,7 +87,15 @@ static struct file_head head_of(const struct trace_records *r)
 int trace_records_write(const struct trace_records *r, const char *path)
 {
     struct hs_atomic_file file;
-    if (trace_records_check(r, path) != 0 || hs_atomic_open(&file, path) != 0) {
+    if (trace_records_check(r, path) != 0) {
+        return -1;
+    }
+    if (r->material_count > TRACE_FILE_MATERIALS_MAX) {
+        return hs_error(path, "give parts of the model one material",
+                        "has %u materials, more than %d", r->material_count,
+                        TRACE_FILE_MATERIALS_MAX);
+    }
+    if (hs_atomic_open(&file, path) != 0) {
         return -1;
     }
     const struct file_head head = head_of(r);
@@ -119,6 +127,9 @@ static const char *head_fault(const struct file_head *h, uint64_t file_bytes)
     if (h->is_apart > 1 || (h->version == PLAIN_VERSION) != ends_are_plain(&ends)) {
         return "where its transmitter and receiver stand does not go with its version";
     }
+    if (h->material_count > TRACE_FILE_MATERIALS_MAX) {
+        return "it counts more materials than it names";
+    }
     uint64_t bytes = sizeof *h;
     for (uint32_t b = 0; b < TRACE_BOUNCES_MAX; b++) {
         bytes += (uint64_t)h->record_count[b] * TRACE_RECORD_BYTES;
@@ -140,7 +151,7 @@ static void take_head(struct trace_records *r, const struct file_head *h)
         .bounce_count = h->bounce_count,
         .ends = ends_in(h),
     };
-    memcpy(r->materials, h->materials, sizeof r->materials);
+    memcpy(r->materials, h->materials, sizeof h->materials);
 }
 
 static int read_bounce(struct trace_bounce *b, uint32_t count, uint32_t crc, FILE *in,

@@ -175,7 +175,8 @@ int setup_load(const struct setup *s, struct mesh *m)
     if (!kind) {
         model_file_doubt_size(m, s->model);
     }
-    const struct mesh_zones zones = {(int)s->zones, SETUP_ZONES_ASIDE, SETUP_ZONES_HIGH};
+    const struct mesh_zones zones = {(int)s->zones, SETUP_ZONES_ASIDE, SETUP_ZONES_HIGH,
+                                     s->has_sides};
     if (s->zones > 0 && mesh_zone(m, &zones, s->model) != 0) {
         mesh_free(m);
         return -1;

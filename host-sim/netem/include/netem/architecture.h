@@ -1,5 +1,5 @@
 /* Architectures of reflection networks: those that Niu compares, EP1 to EP5 of Table III and Fig.
- * 17, EP6 to EP8 of Table IV; and EP9 and EP10 of ours, which are EP8 with other inputs. */
+ * 17, EP6 to EP8 of Table IV; and EP9 to EP11 of ours, which are EP8 with other inputs. */
 #ifndef NETEM_ARCHITECTURE_H
 #define NETEM_ARCHITECTURE_H
 
@@ -12,8 +12,8 @@ enum { NM_INPUTS = 4 };
 
 /* EP9's: the three angles; the angle between the normal and the bisector of both ways, which is 0
  * where a mirror would send the ray to the radar, and how near it is to 0; and one input for each
- * material, of which one is not 0, so that materials have no order. */
-enum { NM_ANGLE_INPUTS = 5, NM_OWN_INPUTS = NM_ANGLE_INPUTS + TRACE_MATERIALS_MAX };
+ * material, of which one is not 0, so that materials have no order. EP11 has more of these. */
+enum { NM_ANGLE_INPUTS = 5, NM_FEW_NAMES = 32, NM_MANY_NAMES = TRACE_MATERIALS_MAX };
 
 /* EP10's: EP9's angles, and what the material is made of (struct nm_surface), so that one network
  * knows all materials between those of its training. */
@@ -34,7 +34,7 @@ extern const char *const nm_connection_names[NM_CONNECTIONS];
 /* The same words for a table of options. */
 #define NM_CONNECTION_WORDS "coefficient|intensity"
 
-enum { NM_INPUTS_MAX = NM_OWN_INPUTS + 1 };
+enum { NM_INPUTS_MAX = NM_ANGLE_INPUTS + NM_MANY_NAMES + 1 };
 
 /* Fig. 17. */
 enum nm_wiring {
@@ -44,18 +44,21 @@ enum nm_wiring {
 };
 
 struct nm_architecture {
-    const char *name; /* "EP1" to "EP10" */
+    const char *name; /* "EP1" to "EP11" */
     enum nm_wiring wiring;
     enum nm_connection connection;
     enum nm_material_input material;
     struct nm_network network; /* one of them, where there are two alike */
 };
 
-enum { NM_ARCHITECTURES = 10, NM_PAPERS = 8 }; /* the paper's come first */
+enum { NM_ARCHITECTURES = 11, NM_PAPERS = 8 }; /* the paper's come first */
 extern const struct nm_architecture nm_architectures[NM_CONNECTIONS][NM_ARCHITECTURES];
 
 /* NULL when there is no such name. */
 const struct nm_architecture *nm_architecture_find(const char *name, enum nm_connection connection);
+
+/* Materials that its networks can be told apart by name; all of them where they go otherwise. */
+uint32_t nm_architecture_names(const struct nm_architecture *a);
 
 /* Weights of all its networks together; those of the echo (BK) come first. */
 size_t nm_architecture_size(const struct nm_architecture *a);

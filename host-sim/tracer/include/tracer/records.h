@@ -34,10 +34,11 @@
 
 enum {
     TRACE_BOUNCES_MAX = 5,
-    TRACE_MATERIALS_MAX = 32,
-    TRACE_NAME_SIZE = 32,     /* of a material, with its end */
-    TRACE_CELLS_MAX = 4096,   /* either way */
-    TRACE_RAYS_MAX = 1 << 26, /* columns * rows */
+    TRACE_MATERIALS_MAX = 128,
+    TRACE_FILE_MATERIALS_MAX = 32, /* of a file */
+    TRACE_NAME_SIZE = 32,          /* of a material, with its end */
+    TRACE_CELLS_MAX = 4096,        /* either way */
+    TRACE_RAYS_MAX = 1 << 26,      /* columns * rows */
     TRACE_RECORD_BYTES = 52,
 };
 

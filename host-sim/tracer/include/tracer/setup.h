@@ -15,7 +15,8 @@ struct setup {
     /* the model */
     const char *model, *up;
     bool is_as_is;
-    long zones; /* cut into so many along, SETUP_ZONES_ASIDE and SETUP_ZONES_HIGH; 0: not */
+    bool has_sides; /* zones left and right are of different materials */
+    long zones;     /* cut into so many along, SETUP_ZONES_ASIDE and SETUP_ZONES_HIGH; 0: not */
     double scale, turn_deg;
     /* the look */
     double azimuth_deg, depression_deg, wavelength_m;

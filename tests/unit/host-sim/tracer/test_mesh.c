@@ -475,8 +475,9 @@ static void assert_zones_are_named(const struct mesh *m, const struct mesh_zones
         }
         const char *digits = strchr(m->materials[t->material], '.');
         char expected[8];
-        snprintf(expected, sizeof expected, ".%d%d%d", piece(middle.x, low.x, high.x, z->along),
-                 piece(fabs(middle.y), 0, wide, z->aside), piece(middle.z, low.z, high.z, z->high));
+        snprintf(expected, sizeof expected, ".%d%d%d%s", piece(middle.x, low.x, high.x, z->along),
+                 piece(fabs(middle.y), 0, wide, z->aside), piece(middle.z, low.z, high.z, z->high),
+                 z->has_sides && middle.y < 0 ? "r" : "");
         assert_non_null(digits);
         assert_string_equal(digits, expected);
     }
@@ -484,27 +485,30 @@ static void assert_zones_are_named(const struct mesh *m, const struct mesh_zones
 
 TEST(zones_cut_a_model_and_lose_nothing)
 {
-    const struct mesh_zones zones = {4, 2, 3};
-    struct mesh whole = {0}, cut = {0};
-    model_tank(&whole);
-    model_tank(&cut);
-    assert_int_equal(mesh_zone(&cut, &zones, "tank"), 0);
-    assert_true(cut.triangle_count > whole.triangle_count);
-    assert_true(fabs(whole_area_of(&cut) - whole_area_of(&whole)) < 1e-6);
-    assert_true(fabs(volume_of(&cut) - volume_of(&whole)) < 1e-6);
-    assert_zones_are_named(&cut, &zones);
-    struct vec low, high, cut_low, cut_high;
-    mesh_bounds(&whole, &low, &high);
-    mesh_bounds(&cut, &cut_low, &cut_high);
-    assert_true(vec_length(vec_sub(low, cut_low)) + vec_length(vec_sub(high, cut_high)) < 1e-12);
-    mesh_free(&whole);
-    mesh_free(&cut);
+    for (int has_sides = 0; has_sides < 2; has_sides++) {
+        const struct mesh_zones zones = {4, 2, 3, has_sides};
+        struct mesh whole = {0}, cut = {0};
+        model_tank(&whole);
+        model_tank(&cut);
+        assert_int_equal(mesh_zone(&cut, &zones, "tank"), 0);
+        assert_true(cut.triangle_count > whole.triangle_count);
+        assert_true(fabs(whole_area_of(&cut) - whole_area_of(&whole)) < 1e-6);
+        assert_true(fabs(volume_of(&cut) - volume_of(&whole)) < 1e-6);
+        assert_zones_are_named(&cut, &zones);
+        struct vec low, high, cut_low, cut_high;
+        mesh_bounds(&whole, &low, &high);
+        mesh_bounds(&cut, &cut_low, &cut_high);
+        assert_true(vec_length(vec_sub(low, cut_low)) + vec_length(vec_sub(high, cut_high)) <
+                    1e-12);
+        mesh_free(&whole);
+        mesh_free(&cut);
+    }
 }
 
 /* A face that lies in a border belongs to one zone: it would be traced twice. */
 TEST(a_face_in_a_border_is_there_once)
 {
-    const struct mesh_zones zones = {2, 2, 2};
+    const struct mesh_zones zones = {2, 2, 2, false};
     struct mesh m = {0};
     const uint32_t metal = mesh_material(&m, "metal");
     shape_box(&m, (struct vec){-1, -1, 0}, (struct vec){1, 1, 1}, metal);
@@ -517,7 +521,7 @@ TEST(a_face_in_a_border_is_there_once)
 
 TEST(more_zones_than_materials_fit_are_refused_and_the_model_is_as_it_was)
 {
-    const struct mesh_zones zones = {9, 2, 3};
+    const struct mesh_zones zones = {9, 3, 4, true};
     struct mesh m = {0};
     model_tank(&m);
     const uint32_t triangles = m.triangle_count;

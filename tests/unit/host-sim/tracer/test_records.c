@@ -90,6 +90,26 @@ TEST(where_transmitter_and_receiver_stand_is_read_back)
     }
 }
 
+/* Records in memory may have more: those of a file are named in its head. */
+TEST(more_materials_than_a_file_names_are_not_written)
+{
+    struct trace_records r, again;
+    known_dihedral(&r, 1, 0.5, 15, RAYS);
+    for (uint32_t m = r.material_count; m < TRACE_FILE_MATERIALS_MAX + 1; m++) {
+        snprintf(r.materials[m], TRACE_NAME_SIZE, "metal.%u", m);
+    }
+    for (uint32_t more = 0; more < 2; more++) {
+        r.material_count = TRACE_FILE_MATERIALS_MAX + more;
+        assert_int_equal(trace_records_check(&r, "dihedral"), 0);
+        assert_int_equal(trace_records_write(&r, scratch()), more ? -1 : 0);
+    }
+    assert_int_equal(trace_records_read(&again, scratch()), 0);
+    assert_int_equal(again.material_count, TRACE_FILE_MATERIALS_MAX);
+    assert_string_equal(again.materials[31], "metal.31");
+    trace_records_free(&again);
+    trace_records_free(&r);
+}
+
 static size_t load(const char *path, uint8_t **bytes)
 {
     FILE *in = fopen(path, "rb");

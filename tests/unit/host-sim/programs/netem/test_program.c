@@ -44,7 +44,7 @@ TEST(a_command_line_that_makes_no_sense_is_told_so)
     assert_int_equal(
         support_run("%s/bin/landmass-netem recover --model slicy --out %s --rate x", b, folder), 2);
     assert_int_equal(support_run("%s/bin/landmass-netem recover --model slicy --out %s/none "
-                                 "--architecture EP11",
+                                 "--architecture EP12",
                                  b, folder),
                      2);
 }
@@ -169,15 +169,16 @@ TEST(the_own_law_is_scored_by_the_amplitudes_that_render_writes)
                                  "%s/law/score --json %s/law/json",
                                  b, folder, folder, folder, folder),
                      0);
-    assert_int_equal(support_run("python3 -c 'import json, sys\n"
-                                 "s = json.load(open(sys.argv[1]))[\"report\"][\"score\"]\n"
-                                 "print(s)\n"
-                                 "assert s[\"own_law\"][\"mse\"] < 1e-6\n"
-                                 "for null in \"flat\", \"mean_chip\", \"nearest_chip\":\n"
-                                 "    assert s[null][\"mse\"] > 1e-4\n"
-                                 "assert s[\"nearest_chip_deg\"] == 60' %s/law/json",
-                                 folder),
-                     0);
+    assert_int_equal(
+        support_run("python3 -c 'import json, sys\n"
+                    "s = json.load(open(sys.argv[1]))[\"report\"][\"score\"]\n"
+                    "print(s)\n"
+                    "assert s[\"own_law\"][\"mse\"] < 1e-6\n"
+                    "for null in \"flat\", \"mean_chip\", \"nearest_chip\", \"smoothed_chips\":\n"
+                    "    assert s[null][\"mse\"] > 1e-4\n"
+                    "assert s[\"nearest_chip_deg\"] == 60' %s/law/json",
+                    folder),
+        0);
 }
 
 /* Chips of "another vehicle" that are the learned simulator's own fit without error, and the
@@ -395,6 +396,31 @@ TEST(zones_are_learned_each_by_itself)
                                  "--training %s/zones/training.netem --azimuth 10 --out %s/none",
                                  b, folder, folder),
                      1);
+}
+
+/* EP9 has inputs for 32 materials, and EP11 for all that zones make. */
+TEST(more_zones_need_more_inputs)
+{
+    static const char recover[] =
+        "%s/bin/landmass-netem recover --architecture %s --zones 7 --sides --model tank-bare "
+        "--cells 64 --rays 1 --number 2 --epochs 1 --pix-epochs 0 --out %s/%s";
+    const char *b = support_build_dir();
+    assert_int_equal(support_run(recover, b, "EP9", folder, "few"), 1);
+    assert_int_equal(support_run("test -e %s/few/training.netem", folder), 1);
+    assert_int_equal(support_run(recover, b, "EP11", folder, "many"), 0);
+    assert_int_equal(support_run("grep -q '^materials .*metal.711 .*metal.711r' %s/many/"
+                                 "training.netem",
+                                 folder),
+                     0);
+    /* The same names in a file of EP9: refused. */
+    assert_int_equal(support_run("mkdir -p %s/lie && sed 's/^architecture EP11$/architecture EP9/' "
+                                 "%s/many/training.netem > %s/lie/training.netem",
+                                 folder, folder, folder),
+                     0);
+    assert_int_equal(support_run("%s/bin/landmass-netem plot --training %s/lie/training.netem "
+                                 "--out %s/lie 2>&1 | grep -q 'more names than EP9 knows'",
+                                 b, folder, folder),
+                     0);
 }
 
 /* The simulated response lies on the real ones within a twentieth of the peak, and one look is one
