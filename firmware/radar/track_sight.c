@@ -85,8 +85,8 @@ static int64_t above_m_q10(const struct lm_track_scene *s, const struct stretch 
            (range_m_q8 * tangent_q16 >> 14);
 }
 
-/* Ground range where the line first goes below the terrain; 0 if it does not. Between two cells the
- * terrain is straight. */
+/* Ground range where the line first goes below the terrain, or below sea level where the map has
+ * none; 0 if it does not. Between two cells the terrain is straight. */
 static uint32_t first_ground_m_q8(const struct lm_track_scene *s, const struct stretch *way,
                                   int32_t tangent_q16)
 {
@@ -99,7 +99,7 @@ static uint32_t first_ground_m_q8(const struct lm_track_scene *s, const struct s
     int64_t before_m_q10 = -1;
     for (uint32_t i = 0; i < way->cells; i++) {
         const int64_t here_m_q10 = above_m_q10(s, way, i, tangent_q16);
-        if (here_m_q10 >= 0 && s->line->cell[i] != LM_CELL_NONE) {
+        if (here_m_q10 >= 0) {
             const int64_t back_m_q8 =
                 i == 0 ? 0 : (int64_t)way->cell_m_q8 * here_m_q10 / (here_m_q10 - before_m_q10);
             return (uint32_t)(way->begin_m_q8 + (int64_t)i * way->cell_m_q8 + way->cell_m_q8 / 2 -
