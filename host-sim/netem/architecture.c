@@ -1,5 +1,6 @@
 #include "netem/architecture.h"
 
+#include <stdbool.h>
 #include <string.h>
 
 const char *const nm_connection_names[NM_CONNECTIONS] = {"coefficient", "intensity"};
@@ -37,6 +38,8 @@ const char *const nm_connection_names[NM_CONNECTIONS] = {"coefficient", "intensi
              SIX(NM_ANGLE_INPUTS + NM_SURFACE_INPUTS + (more))},                                   \
             {"EP11", NM_TWO_NETWORKS, c, NM_AS_NAME,                                               \
              SIX(NM_ANGLE_INPUTS + NM_MANY_NAMES + (more))},                                       \
+            {"EP12", NM_TWO_NETWORKS, c, NM_AS_NAME_AND_SIDE,                                      \
+             SIX(NM_ANGLE_INPUTS + NM_SIDE_INPUTS + NM_MANY_NAMES + (more))},                      \
     }
 
 const struct nm_architecture nm_architectures[NM_CONNECTIONS][NM_ARCHITECTURES] = {
@@ -56,9 +59,10 @@ const struct nm_architecture *nm_architecture_find(const char *name, enum nm_con
 
 uint32_t nm_architecture_names(const struct nm_architecture *a)
 {
-    const int chained = a->connection == NM_BY_INTENSITY ? 1 : 0;
-    return a->material == NM_AS_NAME ? (uint32_t)(a->network.inputs - NM_ANGLE_INPUTS - chained)
-                                     : TRACE_MATERIALS_MAX;
+    const int others = NM_ANGLE_INPUTS + (a->connection == NM_BY_INTENSITY ? 1 : 0) +
+                       (a->material == NM_AS_NAME_AND_SIDE ? NM_SIDE_INPUTS : 0);
+    const bool is_named = a->material == NM_AS_NAME || a->material == NM_AS_NAME_AND_SIDE;
+    return is_named ? (uint32_t)(a->network.inputs - others) : TRACE_MATERIALS_MAX;
 }
 
 size_t nm_architecture_size(const struct nm_architecture *a)

@@ -121,6 +121,11 @@ static void own_features(const struct nm_architecture *a, const struct nm_reflec
         surface_features(&r->surface, features);
         return;
     }
+    if (a->material == NM_AS_NAME_AND_SIDE) {
+        static const double wide = 2;
+        *features++ = wide * sin(r->side_rad);
+        *features++ = wide * cos(r->side_rad);
+    }
     memset(features, 0, nm_architecture_names(a) * sizeof *features);
     features[r->material] = one;
 }
@@ -190,8 +195,9 @@ static int32_t cell_of(const struct trace_grid *grid, const struct trace_record 
     return r->flags & TRACE_BLOCKED ? -1 : trace_cell(grid, r->across_m, r->range_m);
 }
 
-/* By a record's material. */
+/* By a record's material; and from where all of them are seen. */
 struct numbered {
+    double side_rad;
     uint8_t number[TRACE_MATERIALS_MAX];
     struct nm_surface surface[TRACE_MATERIALS_MAX];
 };
@@ -210,9 +216,11 @@ static int take_ray(const struct trace_grid *grid, const struct trace_record *co
         const uint8_t material = way[b]->material;
         const int number = materials->number[material];
         const struct nm_surface surface = materials->surface[material];
-        const struct nm_reflection bk = {incidence, (double)way[b]->echo_rad,
-                                         (double)way[b]->turn_rad, number, surface};
-        const struct nm_reflection sp = {incidence, incidence, 2 * incidence, number, surface};
+        const struct nm_reflection bk = {
+            incidence, (double)way[b]->echo_rad, (double)way[b]->turn_rad, number,
+            surface,   materials->side_rad};
+        const struct nm_reflection sp = {incidence, incidence, 2 * incidence,
+                                         number,    surface,   materials->side_rad};
         steps[b] = (struct nm_step){.cell = cell_of(grid, way[b])};
         steps[b].row[NM_BK] = table_find(&tables[NM_BK], &bk, &from);
         steps[b].row[NM_SP] = b + 1 < count ? table_find(&tables[NM_SP], &sp, &from) : -1;
@@ -240,7 +248,7 @@ static void take_rays(struct nm_paths *p, const struct trace_records *records,
 int nm_paths_build(struct nm_paths *p, const struct trace_records *records,
                    const struct nm_materials *known, enum nm_connection connection)
 {
-    struct numbered materials = {.surface = {{0, 0, 0, 0}}};
+    struct numbered materials = {.side_rad = records->look.azimuth_deg * pi / 180};
     uint32_t total = 0;
     *p = (struct nm_paths){0};
     if (nm_materials_match(known, records, materials.number) != 0) {

@@ -104,10 +104,11 @@ static struct nm_reflection reflection_at(const struct law_line *line, double de
     const double angle = degrees * pi / 180;
     const struct nm_surface surface = line->materials->surfaces[line->material];
     if (line->direction == NM_SP) {
-        return (struct nm_reflection){angle, angle, 2 * angle, line->material, surface};
+        return (struct nm_reflection){angle, angle, 2 * angle, line->material, surface, 0};
     }
-    return (struct nm_reflection){line->incidence_rad, fabs(angle),
-                                  fabs(line->incidence_rad - angle), line->material, surface};
+    return (struct nm_reflection){
+        line->incidence_rad, fabs(angle), fabs(line->incidence_rad - angle),
+        line->material,      surface,     0};
 }
 
 static double learned_at(void *ctx, double degrees)

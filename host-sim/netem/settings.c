@@ -113,13 +113,14 @@ void nm_train_options(struct nm_settings *s, struct hs_option *o)
 {
     const struct hs_option options[NM_TRAIN_OPTIONS] = {
         {"architecture", HS_WORD, &s->architecture, 0, 0,
-         "EP1|EP2|EP3|EP4|EP5|EP6|EP7|EP8|EP9|EP10|EP11",
+         "EP1|EP2|EP3|EP4|EP5|EP6|EP7|EP8|EP9|EP10|EP11|EP12",
          "Tables III and IV; EP8: a network for each direction, 16-32-64-32-32-1; EP9: likewise,\n"
          "fed with an input for each material and with the distance from a mirror's angle; EP10: "
          "the\n"
          "same with the material's permittivity and roughness, for materials between those "
          "learned;\n"
-         "EP11: EP9 for up to 128 materials instead of 32",
+         "EP11: EP9 for up to 128 materials instead of 32; EP12: EP11, told from which side it is "
+         "seen",
          false},
         {"connection", HS_WORD, &s->connection, 0, 0, NM_CONNECTION_WORDS,
          "of one reflection's network with the next: coefficient: Fig. 11; intensity: Fig. 10, "
@@ -160,7 +161,7 @@ int nm_settings_plan(const struct nm_settings *s, struct nm_plan *plan,
     int loss, method;
     *architecture = nm_architecture_find(s->architecture, nm_settings_connection(s));
     if (!*architecture) {
-        return hs_error("--architecture", "give EP1 to EP11", "there is no %s", s->architecture);
+        return hs_error("--architecture", "give EP1 to EP12", "there is no %s", s->architecture);
     }
     if (choose("--loss", s->loss, "mse", "mae", &loss) != 0 ||
         choose("--method", s->method, "adam", "sgd", &method) != 0) {

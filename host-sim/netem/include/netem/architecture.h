@@ -1,5 +1,5 @@
 /* Architectures of reflection networks: those that Niu compares, EP1 to EP5 of Table III and Fig.
- * 17, EP6 to EP8 of Table IV; and EP9 to EP11 of ours, which are EP8 with other inputs. */
+ * 17, EP6 to EP8 of Table IV; and EP9 to EP12 of ours, which are EP8 with other inputs. */
 #ifndef NETEM_ARCHITECTURE_H
 #define NETEM_ARCHITECTURE_H
 
@@ -19,8 +19,12 @@ enum { NM_ANGLE_INPUTS = 5, NM_FEW_NAMES = 32, NM_MANY_NAMES = TRACE_MATERIALS_M
  * knows all materials between those of its training. */
 enum { NM_SURFACE_INPUTS = 4 };
 
+/* EP12's: EP11's, and sine and cosine of the azimuth from which the radar looks at the target. What
+ * is too small for the model looks another from every side. */
+enum { NM_SIDE_INPUTS = 2 };
+
 /* What a network is told of the material. */
-enum nm_material_input { NM_AS_NUMBER, NM_AS_NAME, NM_AS_SURFACE };
+enum nm_material_input { NM_AS_NUMBER, NM_AS_NAME, NM_AS_SURFACE, NM_AS_NAME_AND_SIDE };
 
 /* How one reflection's network is connected with the next one's. */
 enum nm_connection {
@@ -34,7 +38,7 @@ extern const char *const nm_connection_names[NM_CONNECTIONS];
 /* The same words for a table of options. */
 #define NM_CONNECTION_WORDS "coefficient|intensity"
 
-enum { NM_INPUTS_MAX = NM_ANGLE_INPUTS + NM_MANY_NAMES + 1 };
+enum { NM_INPUTS_MAX = NM_ANGLE_INPUTS + NM_SIDE_INPUTS + NM_MANY_NAMES + 1 };
 
 /* Fig. 17. */
 enum nm_wiring {
@@ -44,14 +48,14 @@ enum nm_wiring {
 };
 
 struct nm_architecture {
-    const char *name; /* "EP1" to "EP11" */
+    const char *name; /* "EP1" to "EP12" */
     enum nm_wiring wiring;
     enum nm_connection connection;
     enum nm_material_input material;
     struct nm_network network; /* one of them, where there are two alike */
 };
 
-enum { NM_ARCHITECTURES = 11, NM_PAPERS = 8 }; /* the paper's come first */
+enum { NM_ARCHITECTURES = 12, NM_PAPERS = 8 }; /* the paper's come first */
 extern const struct nm_architecture nm_architectures[NM_CONNECTIONS][NM_ARCHITECTURES];
 
 /* NULL when there is no such name. */

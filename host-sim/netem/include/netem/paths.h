@@ -36,6 +36,7 @@ struct nm_reflection {
     double turn_rad;      /* between the ways in and out, 0..pi */
     int material;
     struct nm_surface surface; /* of that material */
+    double side_rad;           /* azimuth from which the radar looks at the target */
 };
 
 /* One reflection of one ray. */

@@ -262,6 +262,33 @@ TEST(what_a_network_gives_is_what_the_next_one_gets)
     }
 }
 
+/* The records of facets_make are seen from 10 degrees. */
+TEST(only_networks_of_ep12_are_told_from_which_side)
+{
+    const double side_rad = 10 * acos(-1) / 180;
+    for (int i = 0; i < NM_CONNECTIONS * NM_ARCHITECTURES; i++) {
+        const struct nm_architecture *a =
+            &nm_architectures[i / NM_ARCHITECTURES][i % NM_ARCHITECTURES];
+        double here[NM_INPUTS_MAX] = {0}, there[NM_INPUTS_MAX] = {0}, apart = 0;
+        struct bench b = {.kind = NM_MSE};
+        open_bench(&b, a);
+        for (int d = 0; d < NM_DIRECTIONS; d++) {
+            assert_true(fabs(b.paths.table[d][0].side_rad - side_rad) < 1e-12);
+        }
+        struct nm_reflection r = b.paths.table[NM_BK][0];
+        nm_features_of(a, &r, 1, here);
+        r.side_rad += acos(-1);
+        nm_features_of(a, &r, 1, there);
+        for (int k = 0; k < a->network.inputs; k++) {
+            apart += pow(here[k] - there[k], 2);
+        }
+        /* Sine and cosine, times 2, turned round. */
+        const double expected = strcmp(a->name, "EP12") == 0 ? 16 : 0;
+        assert_true(fabs(apart - expected) < 1e-9);
+        close_bench(&b);
+    }
+}
+
 TEST(paths_for_coefficients_are_not_taken_for_intensities)
 {
     struct bench b = {.kind = NM_MSE};

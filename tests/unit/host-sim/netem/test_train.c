@@ -214,8 +214,8 @@ static double error_as(const struct world *w, enum nm_direction direction, int m
     int count = 0;
     for (double angle = 0.1; angle < 1.4; angle += 0.1, count++) {
         const double turn = direction == NM_BK ? 0 : 2 * angle;
-        const struct nm_reflection r = {angle, angle, turn, material, *asked};
-        const struct nm_reflection truth = {angle, angle, turn, material, *true_one};
+        const struct nm_reflection r = {angle, angle, turn, material, *asked, 0};
+        const struct nm_reflection truth = {angle, angle, turn, material, *true_one, 0};
         sum += error_at(w, &r, &truth, direction);
     }
     return sum / count;

@@ -44,7 +44,7 @@ TEST(a_command_line_that_makes_no_sense_is_told_so)
     assert_int_equal(
         support_run("%s/bin/landmass-netem recover --model slicy --out %s --rate x", b, folder), 2);
     assert_int_equal(support_run("%s/bin/landmass-netem recover --model slicy --out %s/none "
-                                 "--architecture EP12",
+                                 "--architecture EP13",
                                  b, folder),
                      2);
 }
