@@ -195,6 +195,11 @@ def what_happened_is_marked(b):
     designations = sum("unit 1F4C4D02#010D" in line for line in log.splitlines())
     assert b.ask("debrief.marks.filter((m) => m.kind === 'designate').length") == designations > 3
     assert b.ask("document.querySelectorAll('#marks button').length") > 5
+    # Two commands in a tenth of a second have one button, and two ticks.
+    listed, ticks = b.ask("[document.querySelectorAll('#marks button').length, document.querySelectorAll('.tick').length]")
+    b.run("debrief.add([0, 1].map((n) => ({us: 1e6 + n, kind: 'command', text: 'command, frame 1'})));")
+    assert b.ask("document.querySelectorAll('#marks button').length") == listed + 1
+    assert b.ask("document.querySelectorAll('.tick').length") == ticks + 2
 
 
 def a_dropped_file_plays_and_a_bad_one_is_refused(b):

@@ -28,6 +28,7 @@ class Debrief {
         this.image = {url: new URL('image', document.baseURI).href};
         this.speedAt = SPEEDS.indexOf(1);
         this.marks = [];
+        this.listed = new Set();
         this.connect();
         this.module = await (await fetch('web/landmass.wasm')).arrayBuffer();
         await this.list();
@@ -64,6 +65,7 @@ class Debrief {
         this.log = log;
         this.name = name.replace(/\.log$/, '');
         this.marks = [];
+        this.listed = new Set();
         this.lengthUs = 0;
         this.jumps = {count: 0, worstMs: 0};
         this.pace = null;
@@ -157,10 +159,13 @@ class Debrief {
                 tick.style.left = `${100 * mark.us / this.lengthUs}%`;
                 find('line').append(tick);
             }
-            if (this.marks.length <= LISTED_MOST) {
+            const text = `${clockOf(mark.us)}  ${mark.text}`;
+            // Two of one name would lead to one place.
+            if (this.marks.length <= LISTED_MOST && !this.listed.has(text)) {
+                this.listed.add(text);
                 const button = document.createElement('button'), item = document.createElement('li');
                 button.type = 'button';
-                button.textContent = `${clockOf(mark.us)}  ${mark.text}`;
+                button.textContent = text;
                 button.addEventListener('click', () => this.jump(mark.us));
                 item.append(button);
                 find('marks').append(item);
