@@ -41,6 +41,17 @@ struct ground {
     double beyond, right, waves_m, long_m;
 };
 
+/* In this order, which the numbers of a test hang on. */
+static struct ground drawn_ground(struct hs_rng *r)
+{
+    struct ground g;
+    g.beyond = -0.25 + 0.9 * hs_rng_uniform(r);
+    g.right = -0.3 + 0.6 * hs_rng_uniform(r);
+    g.waves_m = hs_rng_uniform(r);
+    g.long_m = 10 + 40 * hs_rng_uniform(r);
+    return g;
+}
+
 static double rise_m(const struct ground *g, double right_m, double beyond_m)
 {
     return g->beyond * beyond_m + g->right * right_m +
@@ -159,10 +170,7 @@ TEST_WITH(a_shadow_ends_where_the_ray_over_the_target_meets_the_ground, set_up,
     int judged = 0;
     hs_rng_seed(&r, 5);
     for (int i = 0; i < 200; i++) {
-        const struct ground ground = {.beyond = -0.25 + 0.9 * hs_rng_uniform(&r),
-                                      .right = -0.3 + 0.6 * hs_rng_uniform(&r),
-                                      .waves_m = hs_rng_uniform(&r),
-                                      .long_m = 10 + 40 * hs_rng_uniform(&r)};
+        const struct ground ground = drawn_ground(&r);
         shadow_on(f, &ground, &judged);
     }
     print_message("# %d dark cells away from the shadow's edge\n", judged);
@@ -332,10 +340,7 @@ TEST_WITH(in_a_window_too_a_shadow_ends_where_the_ray_meets_the_ground, set_up,
     int judged = 0;
     hs_rng_seed(&r, 5);
     for (int n = 0; n < 200; n++) {
-        const struct ground ground = {.beyond = -0.25 + 0.9 * hs_rng_uniform(&r),
-                                      .right = -0.3 + 0.6 * hs_rng_uniform(&r),
-                                      .waves_m = hs_rng_uniform(&r),
-                                      .long_m = 10 + 40 * hs_rng_uniform(&r)};
+        const struct ground ground = drawn_ground(&r);
         for (int right_m = -WINDOW_LINES / 2; right_m <= WINDOW_LINES / 2; right_m++) {
             judged += judge_window_line(f, &ground, right_m);
         }
