@@ -43,7 +43,6 @@ struct walk {
     bool tells_runs;
     struct map_axis north, east;
     uint32_t cells;
-    uint8_t lod;
     uint32_t side_log2; /* of a tile, in BAM of latitude */
     uint32_t sixteenth; /* of the current row: sixteenth_of_row */
 };
@@ -178,7 +177,6 @@ static OUT_OF_LINE void start_walk(struct walk *w, const struct lm_db *db, uint8
     const uint64_t from_pole = path->latitude + ((uint64_t)FX_BAM_90 << 32);
     w->path = path;
     w->cells = cells;
-    w->lod = lod;
     w->side_log2 = (uint32_t)db->shift0 + lod + LM_TILE_CELLS_LOG2;
     start_axis(&w->north,
                (struct path_coordinate){from_pole, path->latitude_step, path->latitude_bend},
@@ -303,7 +301,7 @@ static void add_gain(const struct lm_classes *classes, uint8_t lod, uint8_t of_l
 
 /* Read a run from an ancestor that is assigned to it. Where the map has nothing finer it is
  * blended, if its cells are so much longer than the line's. */
-static void read_ancestor(const struct walk *w, const struct lm_tile_cache *tiles,
+static void read_ancestor(const struct walk *w, const struct lm_tile_cache *tiles, uint8_t lod,
                           const struct lm_tile *tile, const struct lm_tile_coords *coords,
                           uint32_t first, uint32_t end, struct lm_scan_line *line)
 {
@@ -319,7 +317,7 @@ static void read_ancestor(const struct walk *w, const struct lm_tile_cache *tile
         lm_tile_read(tiles->pool, coords, first, end, line);
     }
     if (!tiles->is_late) {
-        add_gain(&tiles->db->classes, tile->lod, w->lod, first, end, line);
+        add_gain(&tiles->db->classes, tile->lod, lod, first, end, line);
     }
 }
 
@@ -341,7 +339,7 @@ static SELDOM void read_substitute(const struct walk *w, struct lm_tile_cache *t
         quadratic_in_ancestor(&w->north.coordinate, middle, generations),
         quadratic_in_ancestor(&w->east.coordinate, middle, generations)};
     assign_tile(lm_tile_base_of(tiles->pool, tile), first, end, line);
-    read_ancestor(w, tiles, tile, &coords, first, end, line);
+    read_ancestor(w, tiles, lod, tile, &coords, first, end, line);
     if ((uint16_t)line->cell[middle] != LM_CELL_NONE && tile->lod > lod) {
         line->coarsest_lod = tile->lod > line->coarsest_lod ? tile->lod : line->coarsest_lod;
         line->coarse_cells = (uint16_t)(line->coarse_cells + end - first);

@@ -205,12 +205,11 @@ static uint32_t draw_of(const struct lm_tile_fill *f, uint32_t cell, uint32_t ro
 }
 
 /* The cell of a record that has the class and height of one, and so much more reflectivity as its
- * class has gain at the source's LOD. A code is 1/2 dB. */
+ * class has gain at the source's LOD. */
 static uint16_t cell_with(const struct lm_tile_fill *f, uint32_t cell, int32_t more_db_q8)
 {
-    const int32_t more = (more_db_q8 + f->more_db_q8[cell >> 4 & 15] + 64) >> 7;
-    const int32_t gamma = fx_clamp_i32((int32_t)(cell >> 8 & 255) + more, 0, 255);
-    return (uint16_t)((uint32_t)gamma << 8 | (cell & 255));
+    const int32_t all_db_q8 = more_db_q8 + f->more_db_q8[cell >> 4 & 15];
+    return lm_cell_brightened(cell, lm_gamma_codes_of(all_db_q8));
 }
 
 static uint16_t blended_cell(const struct lm_tile_fill *f, const struct blended *b, uint32_t row,

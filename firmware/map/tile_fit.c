@@ -1,11 +1,6 @@
 #include "lm/tile_fit.h"
 
-#include "fx/sat.h"
-
-enum {
-    CODE_LOG2 = 7, /* a code of reflectivity is 1/2 dB */
-    ROWS_A_PART = 11
-};
+enum { ROWS_A_PART = 11 };
 
 int lm_tile_fit_begin(struct lm_tile_fit *f, struct lm_tile *tile, const struct lm_classes *own,
                       uint8_t own_lod, const struct lm_classes *view, uint8_t lod)
@@ -15,16 +10,10 @@ int lm_tile_fit_begin(struct lm_tile_fit *f, struct lm_tile *tile, const struct 
     for (uint32_t i = 0; i < LM_DB_CLASS_NONE; i++) {
         const int32_t more_db_q8 =
             own->entry[i].lod_gain_db_q8[own_lod] - view->entry[i].lod_gain_db_q8[lod];
-        f->codes[i] = (int16_t)((more_db_q8 + (1 << CODE_LOG2 >> 1)) >> CODE_LOG2);
+        f->codes[i] = (int16_t)lm_gamma_codes_of(more_db_q8);
         differ += f->codes[i] != 0;
     }
     return differ != 0 ? LM_BUSY : LM_OK;
-}
-
-static uint16_t fitted(const struct lm_tile_fit *f, uint32_t cell)
-{
-    const int32_t code = (int32_t)(cell >> 8) + f->codes[cell >> 4 & 15];
-    return (uint16_t)((uint32_t)fx_clamp_i32(code, 0, 255) << 8 | (cell & 255));
 }
 
 int lm_tile_fit_run(struct lm_tile_fit *f)
@@ -32,7 +21,8 @@ int lm_tile_fit_run(struct lm_tile_fit *f)
     struct lm_tile_point(*points)[LM_TILE_POINTS] = f->tile->points;
     for (uint32_t i = 0; i < ROWS_A_PART && f->row < LM_TILE_POINTS; i++, f->row++) {
         for (uint32_t column = 0; column < LM_TILE_POINTS; column++) {
-            points[f->row][column].cell = fitted(f, points[f->row][column].cell);
+            uint16_t *cell = &points[f->row][column].cell;
+            *cell = lm_cell_brightened(*cell, f->codes[*cell >> 4 & 15]);
         }
     }
     return f->row < LM_TILE_POINTS ? LM_BUSY : LM_OK;

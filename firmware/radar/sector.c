@@ -422,10 +422,15 @@ static struct lm_ground_path path_of(const struct lm_geo_ray *ray, uint32_t from
     return path;
 }
 
+/* Ground range of the far end of the last cell. */
+static uint32_t far_end_m_q8(const struct lm_sector *s)
+{
+    return s->ground_edge_m_q8 + s->grid.cells * s->grid.cell_m_q8;
+}
+
 static struct lm_ground_path sample_path(const struct lm_sector *s, const struct lm_geo_ray *ray)
 {
-    return path_of(ray, s->ground_edge_m_q8,
-                   s->ground_edge_m_q8 + s->grid.cells * s->grid.cell_m_q8, s->grid.cells);
+    return path_of(ray, s->ground_edge_m_q8, far_end_m_q8(s), s->grid.cells);
 }
 
 /* Path of the foreground of a window. */
@@ -463,8 +468,7 @@ static void find_live(struct lm_sector *s, const struct lm_target_query *query, 
     const struct lm_live_line line = {.azimuth = azimuth,
                                       .width = lm_beam_spacing(&s->beam, s->radar),
                                       .begin_m_q8 = s->ground_edge_m_q8,
-                                      .end_m_q8 =
-                                          s->ground_edge_m_q8 + s->grid.cells * s->grid.cell_m_q8,
+                                      .end_m_q8 = far_end_m_q8(s),
                                       .is_doppler = s->beam.fineness != 0,
                                       .is_of_beacons = is_for_beacons(s),
                                       .speed_mm_s = s->platform.speed_mm_s,
@@ -735,7 +739,7 @@ static void request(const struct lm_sector *s, struct lm_tile_cache *tiles, fx_b
     struct lm_geo_ray ray;
     const uint32_t more_m_q8 = RAY_MORE_CELLS * s->grid.cell_m_q8;
     const uint32_t from_m_q8 = s->ground_edge_m_q8 - fx_min_u32(more_m_q8, s->ground_edge_m_q8);
-    const uint32_t to_m_q8 = s->ground_edge_m_q8 + s->grid.cells * s->grid.cell_m_q8 + more_m_q8;
+    const uint32_t to_m_q8 = far_end_m_q8(s) + more_m_q8;
     lm_geo_set_ray(&ray, &s->origin, s->up + azimuth);
     const struct lm_ground_path path = path_of(&ray, from_m_q8, to_m_q8, s->grid.cells);
     lm_scan_line_prefetch(tiles, s->lod, &path, s->grid.cells);
@@ -761,9 +765,8 @@ void lm_sector_prefetch(struct lm_sector *s, struct lm_tile_cache *tiles)
      * 2^28. */
     const uint32_t beside = LM_BEAM_TAPS / 2 * lm_beam_spacing(&s->beam, s->radar);
     const uint32_t all = s->lines * s->width + 2 * beside;
-    const uint32_t end_m_q8 = s->ground_edge_m_q8 + s->grid.cells * s->grid.cell_m_q8;
-    const uint32_t apart =
-        (uint32_t)((uint64_t)RAYS_APART_CELLS * FX_BAM_PER_RADIAN * s->grid.cell_m_q8 / end_m_q8);
+    const uint32_t apart = (uint32_t)((uint64_t)RAYS_APART_CELLS * FX_BAM_PER_RADIAN *
+                                      s->grid.cell_m_q8 / far_end_m_q8(s));
     request(s, tiles, (fx_bam_t)s->left + s->asked_bam - beside);
     s->is_asked_for = s->asked_bam == all;
     s->asked_bam = fx_min_u32(s->asked_bam + apart, all);

@@ -5,6 +5,7 @@
 
 #include <stdint.h>
 
+#include "fx/sat.h"
 #include "lm/units.h"
 
 /* Sides of a tile, in cells, in posts and in points of its record.
@@ -27,7 +28,25 @@ enum {
 };
 
 /* Reflectivity codes of cells: gamma in dB = code / 2 - 80, which is -80.0..+47.5 dB. */
-enum { LM_GAMMA_CODE_STEP_DB_Q8 = 128, LM_GAMMA_CODE_ZERO_DB_Q8 = LM_DB_Q8(-80) };
+enum {
+    LM_GAMMA_CODE_STEP_LOG2 = 7,
+    LM_GAMMA_CODE_STEP_DB_Q8 = 1 << LM_GAMMA_CODE_STEP_LOG2,
+    LM_GAMMA_CODE_ZERO_DB_Q8 = LM_DB_Q8(-80)
+};
+
+/* Codes that decibels come to, to the nearest. */
+static inline int32_t lm_gamma_codes_of(int32_t db_q8)
+{
+    return (db_q8 + LM_GAMMA_CODE_STEP_DB_Q8 / 2) >> LM_GAMMA_CODE_STEP_LOG2;
+}
+
+/* The cell of a record with `codes` more reflectivity, which ends at those of codes 0 and 255. What
+ * stands above the record's 16 bits is left away. */
+static inline uint16_t lm_cell_brightened(uint32_t cell, int32_t codes)
+{
+    const int32_t code = fx_clamp_i32((int32_t)(cell >> 8 & 255) + codes, 0, 255);
+    return (uint16_t)((uint32_t)code << 8 | (cell & 255));
+}
 
 /* A cell and the elevation post at its south-west corner. They are stored side by side because
  * every reader needs both: one little-endian word, with the cell in its low half. */
