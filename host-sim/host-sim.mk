@@ -2,7 +2,7 @@
 # A library sees earlier lines only, so that the arrows cannot run in a circle.
 $(call host_library, lib,          fixed firmware,                                      libpng)
 $(call host_library, gis,          lib,                                                 gdal proj)
-$(call host_library, image,        lib fixed firmware,                                  liblz4)
+$(call host_library, image,        lib fixed firmware,                                  liblz4 libcrypto)
 $(call host_library, radar,        lib fixed firmware)
 $(call host_library, trust,        lib fixed firmware,                                  libcrypto)
 $(call host_library, classify,     gis lib,                                             openblas -lpthread)

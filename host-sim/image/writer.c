@@ -5,6 +5,7 @@
 #include "fx/crc32c.h"
 #include "hs/error.h"
 #include "hs/progress.h"
+#include "hs/team.h"
 
 #include <errno.h>
 #include <stdlib.h>
@@ -193,29 +194,76 @@ static void fill_and_seal(struct mapped_tiles *m)
     }
 }
 
-/* Put the records, as they are stored, one behind the other. None becomes longer, so that each goes
- * where records lie that have been moved already, or stays. */
-static void pack(struct mapped_tiles *m)
+/* Records that are packed together, by all processors, before any of them is put in place. */
+enum { ROUND_RECORDS = 1024, PART_RECORDS = 16 };
+
+struct round {
+    const struct mapped_tiles *m;
+    uint32_t first, count;            /* records */
+    uint16_t sizes[ROUND_RECORDS];    /* of each, in units of LM_DB_PLACE_BYTES */
+    uint8_t (*packed)[LM_TILE_BYTES]; /* owned; ROUND_RECORDS of them */
+};
+
+static void *begin_part(void *ctx)
+{
+    return ctx;
+}
+
+static void end_part(void *ctx, void *own)
+{
+    (void)ctx;
+    (void)own;
+}
+
+static void pack_part(void *ctx, void *own, uint32_t part)
+{
+    struct round *r = own;
+    (void)ctx;
+    for (uint32_t i = part * PART_RECORDS; i < r->count && i < (part + 1) * PART_RECORDS; i++) {
+        r->sizes[i] = image_pack(&r->m->tiles[r->first + i], r->m->w->compression, r->packed[i]);
+    }
+}
+
+/* Put the records of a round one behind the other. None is longer than it was unpacked, so that
+ * they go where records lie that have been packed. */
+static void put_round(const struct round *r)
+{
+    struct image_writer *w = r->m->w;
+    for (uint32_t i = 0; i < r->count; i++) {
+        const size_t bytes = (size_t)r->sizes[i] * LM_DB_PLACE_BYTES;
+        w->stored[r->first + i] = (struct image_stored_place){w->tiles_size, r->sizes[i]};
+        memcpy((uint8_t *)r->m->tiles + (size_t)w->tiles_size * LM_DB_PLACE_BYTES, r->packed[i],
+               bytes);
+        w->tiles_size += r->sizes[i];
+        w->tiles_crc = fx_crc32c(w->tiles_crc, r->packed[i], bytes);
+        image_sha256_add(&w->tiles_sha256, r->packed[i], bytes);
+    }
+}
+
+/* Put all records as they are stored. Returns 0, or -1 without memory. */
+static int pack(const struct mapped_tiles *m)
 {
     struct image_writer *w = m->w;
-    uint8_t record[LM_TILE_BYTES];
+    struct round r = {.m = m, .packed = malloc(ROUND_RECORDS * sizeof *r.packed)};
+    const struct hs_team team = {&r, begin_part, pack_part, end_part, NULL};
+    const uint32_t threads = hs_team_threads();
     struct hs_progress progress;
+    int result = r.packed ? 0 : -1;
     hs_progress_begin(&progress, "storing tiles", w->header.record_count);
     w->tiles_size = 0;
-    for (uint32_t i = 0; i < w->header.record_count; i++) {
-        const uint16_t size = image_pack(&m->tiles[i], w->compression, record);
-        const size_t bytes = (size_t)size * LM_DB_PLACE_BYTES;
-        w->stored[i] = (struct image_stored_place){w->tiles_size, size};
-        memcpy((uint8_t *)m->tiles + (size_t)w->tiles_size * LM_DB_PLACE_BYTES, record, bytes);
-        w->tiles_size += size;
-        w->tiles_crc = fx_crc32c(w->tiles_crc, record, bytes);
-        image_sha256_add(&w->tiles_sha256, record, bytes);
-        if (i % RELEASE_RECORDS == RELEASE_RECORDS - 1) {
+    for (; result == 0 && r.first < w->header.record_count; r.first += r.count) {
+        const uint32_t left = w->header.record_count - r.first;
+        r.count = left < ROUND_RECORDS ? left : ROUND_RECORDS;
+        result = hs_team_run(&team, (r.count + PART_RECORDS - 1) / PART_RECORDS, threads);
+        if (result == 0) {
+            put_round(&r);
             (void)madvise(m->map, m->map_bytes, MADV_DONTNEED);
+            hs_progress_update(&progress, r.first + r.count);
         }
-        hs_progress_update(&progress, i + 1);
     }
     hs_progress_end(&progress);
+    free(r.packed);
+    return result;
 }
 
 static int finish_tiles(struct image_writer *w)
@@ -243,8 +291,11 @@ static int finish_tiles(struct image_writer *w)
     }
     m.tiles = (void *)(m.map + page);
     fill_and_seal(&m);
-    pack(&m);
+    const int packed = pack(&m);
     munmap(m.map, bytes);
+    if (packed != 0) {
+        return hs_error(w->file.path, NULL, "out of memory");
+    }
     const off_t end = (off_t)(offset + (uint64_t)w->tiles_size * LM_DB_PLACE_BYTES);
     return ftruncate(fileno(w->file.stream), end) == 0 ? 0 : write_failed(w);
 }

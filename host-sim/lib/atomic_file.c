@@ -116,18 +116,26 @@ void hs_atomic_drop(const char *temporary)
     }
 }
 
-/* NULL when memory ran out. */
-static char *name_beside(const char *path)
+/* What a process calls its file; NULL when memory ran out. */
+static char *name_beside(const char *path, pid_t process)
 {
     char *name = NULL;
     /* The extension stays last: some writers choose their format by it. */
     const char *slash = strrchr(path, '/');
     const int folder = slash ? (int)(slash - path) + 1 : 0;
-    if (asprintf(&name, "%.*s.unfinished-%ld-%s", folder, path, (long)getpid(), path + folder) <
-        0) {
+    if (asprintf(&name, "%.*s.unfinished-%ld-%s", folder, path, (long)process, path + folder) < 0) {
         return NULL;
     }
     return name;
+}
+
+void hs_atomic_drop_of(const char *path, pid_t process)
+{
+    char *name = name_beside(path, process);
+    if (name) {
+        unlink(name);
+    }
+    free(name);
 }
 
 /* A device, a pipe or a folder: renaming over it would destroy it. */
@@ -162,7 +170,7 @@ char *hs_atomic_temporary_name(const char *path)
     if (check_place(path) != 0) {
         return NULL;
     }
-    char *name = name_beside(path);
+    char *name = name_beside(path, getpid());
     if (name) {
         remember(name);
     } else {
@@ -189,7 +197,7 @@ static bool is_claimed(const char *temporary)
 
 int hs_output_claim(const char *path)
 {
-    char *name = name_beside(path);
+    char *name = name_beside(path, getpid());
     if (!name) {
         return hs_error(path, NULL, "out of memory");
     }

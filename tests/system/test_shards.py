@@ -11,8 +11,10 @@ import os
 import random
 import resource
 import shutil
+import signal
 import subprocess
 import tempfile
+import time
 
 import numpy
 from osgeo import gdal
@@ -61,7 +63,7 @@ def parts_of(folder):
 
 
 def same_bytes(what, options, counts):
-    good("build", *options, "--out", "whole.lmdb")
+    good("build", *options, "--jobs", "1", "--out", "whole.lmdb")
     for count in counts:
         plan, folder = "%d.plan" % count, "parts-%d" % count
         good("plan", *options, "--shards", str(count), "--out", plan)
@@ -155,6 +157,61 @@ def changes():
     check("a folder of parts named by their keys joins, too", digest("named.lmdb") == digest("whole.lmdb"))
 
 
+def of(parent):
+    """Processes that one has begun."""
+    with open("/proc/%d/task/%d/children" % (parent, parent)) as file:
+        return [int(word) for word in file.read().split()]
+
+
+def is_alive(process):
+    try:
+        with open("/proc/%d/stat" % process) as file:
+            return file.read().rpartition(")")[2].split()[0] != "Z"
+    except OSError:
+        return False
+
+
+def start_workers(options):
+    """A build with two workers, both at work. Returns it and them."""
+    words = [BUILD + "/bin/landmass-db", "build", *options, "--jobs", "2", "--out", "made/new.lmdb"]
+    build = subprocess.Popen(words, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+    children = []
+    while build.poll() is None and sum(name.endswith(".part") for name in os.listdir("made")) < 2:
+        children = of(build.pid)
+    return build, children
+
+
+def workers():
+    """A build whose tiles are made by several processes."""
+    raster("hills.tif", 4326, 10, 45, 1 / 1200, hills((480, 480), 9), gdal.GDT_Float32)
+    options = ["--classes", CLASSES, "--terrain", "hills.tif", "--cell", "19", "--seed", "1"]
+    os.makedirs("made", exist_ok=True)
+    done = good("build", *options, "--jobs", "1", "--out", "whole.lmdb")
+    shared = good("build", *options, "--jobs", "3", "--out", "made/joined.lmdb")
+    check("made by three processes it is the same bytes", digest("made/joined.lmdb") == digest("whole.lmdb"))
+    check("and the same report, but for the time", done.stdout.rpartition("done in")[0] == shared.stdout.rpartition("done in")[0]
+          and done.stderr == shared.stderr, shared.stdout + shared.stderr)
+    check("and nothing else is left", os.listdir("made") == ["joined.lmdb"], str(os.listdir("made")))
+    done = db("build", *options, "--jobs", "2", "--out", "made/new.lmdb", limit=(resource.RLIMIT_FSIZE, (200000, 200000)))
+    refused("a full disk is refused, with what the worker said", done, "cannot be written", "made/new.lmdb: shard ", "could not be made")
+    check("and leaves nothing, nor a worker", os.listdir("made") == ["joined.lmdb"], str(os.listdir("made")))
+    build, children = start_workers(options)
+    os.kill(children[0], signal.SIGKILL)
+    said = build.communicate(timeout=300)[1]
+    check("a worker that is killed is told, with its shard", build.returncode == 1 and "was ended by signal 9" in said
+          and "made/new.lmdb: shard " in said, said)
+    check("the others end, and nothing is left", not any(map(is_alive, children)) and os.listdir("made") == ["joined.lmdb"],
+          str(os.listdir("made")))
+    build, children = start_workers(options)
+    build.terminate()
+    build.communicate(timeout=300)
+    until = time.monotonic() + 60
+    while time.monotonic() < until and any(map(is_alive, children)):
+        time.sleep(0.05)
+    check("workers end with a build that is stopped, and nothing is left", len(children) == 2 and not any(map(is_alive, children))
+          and os.listdir("made") == ["joined.lmdb"], str(os.listdir("made")))
+
+
 def main():
     with tempfile.TemporaryDirectory() as work:
         os.chdir(work)
@@ -162,6 +219,7 @@ def main():
         same_bytes("the built-in scene with detail, heights and facings", options, (1, 4, 9))
         refusals(options)
         changes()
+        workers()
         # 61.875 north is a border of zones; 179.6 to 180.4 east.
         ground = hills((320, 320), 3)
         ground[100:130, 140:180] = -9999

@@ -20,6 +20,7 @@ struct build_settings {
     const char *plan;        /* text of a work plan that a shard is taken from */
     long shard;              /* its number; -1: none */
     long shards, memory_mib; /* for the command plan */
+    long jobs;               /* processes that make tiles; 0: one for each processor */
     int compression;         /* enum image_compression */
     int sensor;              /* enum hs_sensor; -1: as the reflectivity says, or X */
     uint32_t centre_bam[2];  /* latitude, longitude; when `centre` is given */
@@ -55,10 +56,11 @@ struct build_settings build_job_defaults(void);
 int build_job_check(struct build_settings *s);
 
 /* Open all inputs. `work` is the plan that they were judged for, or NULL: then they are judged, and
- * tables chosen. `shard` is what shall be made of them, NULL: all. Returns 0, or -1 with the error
- * reported; close either way. */
+ * tables chosen. `shard` is what shall be made of them: its facings are surveyed. NULL: the caller
+ * does so if it makes tiles of the finest level. Returns 0, or -1 with the error reported; close
+ * either way. */
 int build_job_open(struct build_context *b, const struct build_settings *s,
-                   const struct build_work *work, const struct build_shard *shard, bool is_plan);
+                   const struct build_work *work, const struct build_shard *shard);
 void build_job_close(struct build_context *b);
 
 /* Read what goes beside the tiles; free either way. */
@@ -77,13 +79,15 @@ void build_job_print(const struct build_context *b, const struct build_settings 
                      const struct build_extras *extras, const struct build_report *report,
                      double seconds);
 
+/* Plan what is open, in at least `shards` shards of at most `memory_mib`, into `work`, which has
+ * the options. Returns 0, or -1 with the error reported. */
+int build_job_plan(struct build_work *work, const struct build_context *b,
+                   const struct build_settings *s, const struct build_extras *extras, int shards,
+                   uint32_t memory_mib);
+
 /* Make one shard of s->plan. */
 int build_job_shard(const struct build_settings *given);
 /* Read a plan and its options, which stay in `work`. */
 int build_job_read_plan(struct build_work *work, struct build_settings *s, const char *path);
-
-/* The text of choices that count for every tile. */
-void build_job_choices(const struct build_context *b, const struct build_settings *s, char *text,
-                       size_t room);
 
 #endif

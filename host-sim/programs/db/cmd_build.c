@@ -1,4 +1,5 @@
 #include "build_job.h"
+#include "build_workers.h"
 #include "commands.h"
 #include "cost.h"
 
@@ -14,6 +15,7 @@
 #include "hs/number.h"
 #include "hs/options.h"
 #include "hs/report.h"
+#include "hs/team.h"
 #include "image/codes.h"
 #include "image/reader.h"
 #include "lm/images.h"
@@ -67,7 +69,7 @@ static const struct hs_usage plan_usage = {
 static int keep_options(struct build_work *work, const struct hs_option *options, size_t count,
                         int argc, char **argv)
 {
-    static const char *const own[] = {"out", "json", "shards", "memory"};
+    static const char *const own[] = {"out", "json", "shards", "memory", "jobs"};
     for (int i = 1; i < argc; i++) {
         const char *name = argv[i] + 2;
         const size_t length = strcspn(name, "=");
@@ -214,9 +216,12 @@ bool build_job_read(struct build_settings *s, enum build_command command, struct
         HS_CLASHES_ROW("plan", "classes|terrain|flat|class-raster"),
         HS_NEEDS_ROW("plan", "shard"),
         HS_NEEDS_ROW("shard", "plan"),
+        OPTION("jobs", HS_INTEGER, jobs, 0, HS_TEAM_MAX, "N",
+               "processes that make tiles, as far as there are enough; 0: one for each processor"),
+        HS_CLASHES_ROW("jobs", "plan"),
     };
     const size_t all = sizeof options / sizeof options[0];
-    const size_t count = command == BUILD_WHOLE ? all : command == BUILD_PLAN ? all - 3 : all - 6;
+    const size_t count = command == BUILD_WHOLE ? all : command == BUILD_PLAN ? all - 5 : all - 8;
     const struct hs_usage *const help = command == BUILD_PLAN ? &plan_usage : &usage;
     return hs_options_read(help, options, count, argc, argv, exit_code) &&
            (!work || keep_options(work, options, count, argc, argv) == 0);
@@ -636,32 +641,31 @@ static int check_grid(const struct build_context *b, const struct build_settings
                : hs_error(s->plan, "make the plan again", "the inputs are not those of the plan");
 }
 
-/* Facings are wanted where cells of the finest level are made: not by a plan, nor by a join. */
+/* Facings are wanted where cells of the finest level are made. */
 static int make_tables(struct build_context *b, const struct build_settings *s,
-                       const struct build_work *work, const struct build_shard *shard, bool is_plan)
+                       const struct build_work *work, const struct build_shard *shard)
 {
-    struct image_area within;
     if (work && check_grid(b, s, work) != 0) {
         return -1;
     }
     if (shard) {
-        within = build_work_reach(b, shard);
+        const struct image_area within = build_work_reach(b, shard);
+        if (build_facing_survey(&b->facing, &b->classes, &b->cover, &b->plan, &within) != 0) {
+            return -1;
+        }
     }
-    if (!is_plan && (!work || shard) &&
-        build_facing_survey(&b->facing, &b->classes, &b->cover, &b->plan, shard ? &within : NULL) !=
-            0) {
-        return -1;
+    int result = 0;
+    if (work) {
+        memcpy(b->classes.height_dm, work->heights_dm, sizeof b->classes.height_dm);
+    } else {
+        result = choose_heights(b);
+        result = result == 0 && s->beside ? take_heights(b, s->beside) : result;
     }
-    if (!work) {
-        const int result = choose_heights(b);
-        return result == 0 && s->beside ? take_heights(b, s->beside) : result;
-    }
-    memcpy(b->classes.height_dm, work->heights_dm, sizeof b->classes.height_dm);
-    return 0;
+    return result == 0 && s->beside && !shard ? check_beside(b, s->beside) : result;
 }
 
 int build_job_open(struct build_context *b, const struct build_settings *s,
-                   const struct build_work *work, const struct build_shard *shard, bool is_plan)
+                   const struct build_work *work, const struct build_shard *shard)
 {
     b->seed = (uint32_t)s->seed;
     if ((s->radar && radar_text_read(&b->radar, s->radar) != 0) || read_table(b, s) != 0 ||
@@ -678,7 +682,7 @@ int build_job_open(struct build_context *b, const struct build_settings *s,
     if (s->detail && build_detail_read(&b->detail, s->detail, &detail) != 0) {
         return -1;
     }
-    return make_tables(b, s, work, shard, is_plan);
+    return make_tables(b, s, work, shard);
 }
 
 void build_job_close(struct build_context *b)
@@ -885,9 +889,6 @@ int build_job_write(struct build_context *b, const struct build_settings *s,
                     const struct build_extras *extras, struct build_report *report)
 {
     uint32_t centre[2];
-    if (s->beside && check_beside(b, s->beside) != 0) {
-        return -1;
-    }
     choose_centre(b, s, centre);
     struct image_writer w;
     const struct lm_image_header header = {.shift0 = b->plan.shift0,
@@ -1086,7 +1087,26 @@ void build_job_print(const struct build_context *b, const struct build_settings 
     print_report(b, report, seconds);
 }
 
-static int build(const struct build_settings *s)
+/* The image, its tiles made by workers or, where there are few or `jobs` is 1, here. */
+static int write_image(struct build_context *b, const struct build_settings *s,
+                       struct build_work *work, const struct build_extras *extras,
+                       struct build_report *report)
+{
+    const int jobs = s->jobs > 0 ? (int)s->jobs : (int)hs_team_threads();
+    const int shards = build_workers_shards(b->plan.entry_count, jobs);
+    if (shards > 1) {
+        return build_workers_image(b, s, shards, jobs, work, extras, report);
+    }
+    if (build_facing_survey(&b->facing, &b->classes, &b->cover, &b->plan, NULL) != 0) {
+        return -1;
+    }
+    char *manifest = build_job_manifest(b, s, &extras->targets.signatures);
+    const int result = manifest ? build_job_write(b, s, NULL, manifest, extras, report) : -1;
+    free(manifest);
+    return result;
+}
+
+static int build(const struct build_settings *s, struct build_work *work)
 {
     const double start = db_cost_seconds();
     GDALSetCacheMax64(cache_bytes);
@@ -1096,17 +1116,14 @@ static int build(const struct build_settings *s)
     }
     struct build_report report = {0};
     struct build_extras extras;
-    char *manifest = NULL;
-    int result = build_job_extras(&extras, s) == 0 ? build_job_open(b, s, NULL, NULL, false) : -1;
+    int result = build_job_extras(&extras, s) == 0 ? build_job_open(b, s, NULL, NULL) : -1;
     if (result == 0) {
-        manifest = build_job_manifest(b, s, &extras.targets.signatures);
-        result = manifest ? build_job_write(b, s, NULL, manifest, &extras, &report) : -1;
+        result = write_image(b, s, work, &extras, &report);
     }
     if (result == 0) {
         build_job_print(b, s, &extras, &report, db_cost_seconds() - start);
     }
     build_job_free_extras(&extras);
-    free(manifest);
     build_job_close(b);
     free(b);
     return result;
@@ -1172,8 +1189,8 @@ static int build_shard(struct build_context *b, const struct build_settings *fro
     }
     const struct build_shard *place = &work->shards[number].place;
     bool *counts = calloc((size_t)work->source_count + 1, sizeof *counts);
-    int result = counts ? build_job_open(b, from, work, place, false)
-                        : hs_error(from->plan, NULL, "out of memory");
+    int result =
+        counts ? build_job_open(b, from, work, place) : hs_error(from->plan, NULL, "out of memory");
     if (result == 0) {
         build_work_choose(work, b, place, counts);
         result = build_work_check_sources(work, counts);
@@ -1211,19 +1228,6 @@ int build_job_shard(const struct build_settings *given)
     return result;
 }
 
-void build_job_choices(const struct build_context *b, const struct build_settings *s, char *text,
-                       size_t room)
-{
-    const struct build_rule *r = &b->rule;
-    snprintf(text, room,
-             "sensor %d seed %" PRIu32
-             " rule %d %d %d %.17g %.17g voids %d flat %d names %d "
-             "unknown %s\n",
-             (int)b->sensor, b->seed, r->land, r->water, r->steep, r->sea_level_m, r->steep_tangent,
-             s->voids_are_sea, s->is_flat, s->ignores_names,
-             s->unknown_codes ? s->unknown_codes : "refused");
-}
-
 struct build_settings build_job_defaults(void)
 {
     return (struct build_settings){.land_class = "vegetation",
@@ -1240,18 +1244,20 @@ struct build_settings build_job_defaults(void)
 int db_cmd_build(int argc, char **argv)
 {
     struct build_settings s = build_job_defaults();
+    static struct build_work work;
     int exit_code;
-    if (build_job_read(&s, BUILD_WHOLE, NULL, argc, argv, &exit_code)) {
+    if (build_job_read(&s, BUILD_WHOLE, &work, argc, argv, &exit_code)) {
         if (!s.plan && !s.classes) {
             exit_code = hs_options_wrong(&usage, "--classes", "is required");
         } else if (s.plan) {
             exit_code = build_job_shard(&s) == 0 ? HS_EXIT_OK : HS_EXIT_FAILED;
         } else {
             exit_code = build_job_check(&s) != 0 ? HS_EXIT_USAGE
-                        : build(&s) != 0         ? HS_EXIT_FAILED
+                        : build(&s, &work) != 0  ? HS_EXIT_FAILED
                                                  : HS_EXIT_OK;
         }
     }
+    build_work_free(&work);
     hs_list_free(&s.terrain);
     return exit_code;
 }

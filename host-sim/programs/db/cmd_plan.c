@@ -31,6 +31,35 @@ static int find_sources(struct build_work *work, const struct build_context *b,
     return result;
 }
 
+/* The text of choices that count for every tile. */
+static void choices_of(const struct build_context *b, const struct build_settings *s, char *text,
+                       size_t room)
+{
+    const struct build_rule *r = &b->rule;
+    snprintf(text, room,
+             "sensor %d seed %" PRIu32
+             " rule %d %d %d %.17g %.17g voids %d flat %d names %d "
+             "unknown %s\n",
+             (int)b->sensor, b->seed, r->land, r->water, r->steep, r->sea_level_m, r->steep_tangent,
+             s->voids_are_sea, s->is_flat, s->ignores_names,
+             s->unknown_codes ? s->unknown_codes : "refused");
+}
+
+int build_job_plan(struct build_work *work, const struct build_context *b,
+                   const struct build_settings *s, const struct build_extras *extras, int shards,
+                   uint32_t memory_mib)
+{
+    char choices[1024];
+    build_work_grid(&b->plan, work->grid_sha256);
+    memcpy(work->heights_dm, b->classes.height_dm, sizeof work->heights_dm);
+    work->manifest = build_job_manifest(b, s, &extras->targets.signatures);
+    if (!work->manifest || find_sources(work, b, s, extras) != 0) {
+        return -1;
+    }
+    choices_of(b, s, choices, sizeof choices);
+    return build_work_cut(work, b, shards, memory_mib, choices);
+}
+
 static int write_plan(const struct build_work *work, const char *path)
 {
     struct hs_atomic_file file;
@@ -73,17 +102,9 @@ static int make_plan(struct build_context *b, const struct build_settings *s,
                      struct build_work *work)
 {
     struct build_extras extras;
-    char choices[1024];
-    int result = build_job_extras(&extras, s) == 0 ? build_job_open(b, s, NULL, NULL, true) : -1;
+    int result = build_job_extras(&extras, s) == 0 ? build_job_open(b, s, NULL, NULL) : -1;
     if (result == 0) {
-        build_work_grid(&b->plan, work->grid_sha256);
-        memcpy(work->heights_dm, b->classes.height_dm, sizeof work->heights_dm);
-        work->manifest = build_job_manifest(b, s, &extras.targets.signatures);
-        result = work->manifest ? find_sources(work, b, s, &extras) : -1;
-    }
-    if (result == 0) {
-        build_job_choices(b, s, choices, sizeof choices);
-        result = build_work_cut(work, b, (int)s->shards, (uint32_t)s->memory_mib, choices);
+        result = build_job_plan(work, b, s, &extras, (int)s->shards, (uint32_t)s->memory_mib);
     }
     build_job_free_extras(&extras);
     return result == 0 ? write_plan(work, s->out) : -1;

@@ -8,6 +8,7 @@
 
 #include <stdbool.h>
 #include <stdio.h>
+#include <sys/types.h>
 
 struct hs_atomic_file {
     FILE *stream;    /* open for reading and writing until commit or abort */
@@ -41,6 +42,10 @@ void hs_atomic_abort(struct hs_atomic_file *f);
 char *hs_atomic_temporary_name(const char *path);
 int hs_atomic_rename(const char *temporary, const char *path);
 void hs_atomic_drop(const char *temporary);
+
+/* Remove what another process that was killed has left of the file it would have called `path`.
+ * Harmless when there is nothing. */
+void hs_atomic_drop_of(const char *path, pid_t process);
 
 /* Remove `path`, a file that belonged to one that is replaced. Harmless when there is none. */
 void hs_atomic_remove(const char *path);
