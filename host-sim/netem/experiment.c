@@ -128,7 +128,7 @@ static bool is_same_plan(const struct nm_plan *a, const struct nm_plan *b)
 {
     return a->loss == b->loss && a->method == b->method && a->rate == b->rate &&
            a->pix_rate == b->pix_rate && a->momentum == b->momentum && a->batch == b->batch &&
-           a->reach_px == b->reach_px && a->seed == b->seed &&
+           a->average == b->average && a->reach_px == b->reach_px && a->seed == b->seed &&
            memcmp(a->epochs, b->epochs, sizeof a->epochs) == 0;
 }
 

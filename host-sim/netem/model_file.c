@@ -11,6 +11,9 @@
 
 enum { NUMBERS_A_LINE = 8 };
 
+/* Forms of the file: the first that is read, and later ones by what they brought. */
+enum { NAMING = 2, CONNECTING = 3, AVERAGING = 4 };
+
 static const char remedy[] = "train again or copy the file again";
 static const char *const loss_names[2] = {"mse", "mae"};
 static const char *const method_names[2] = {"adam", "sgd"};
@@ -30,7 +33,8 @@ static void write_plan(FILE *out, const struct nm_plan *p)
     fprintf(out, "loss %s\nmethod %s\n", loss_names[p->loss], method_names[p->method]);
     fprintf(out, "rate %a\npix-rate %a\nmomentum %a\n", p->rate, p->pix_rate, p->momentum);
     fprintf(out, "batch %d\nreach %d\nseed %" PRIu64 "\n", p->batch, p->reach_px, p->seed);
-    fprintf(out, "plan %d %d %d\n", p->epochs[0], p->epochs[1], p->epochs[2]);
+    fprintf(out, "plan %d %d %d\naverage %a\n", p->epochs[0], p->epochs[1], p->epochs[2],
+            p->average);
 }
 
 int nm_model_write(const struct nm_training *t, const char *path)
@@ -41,7 +45,7 @@ int nm_model_write(const struct nm_training *t, const char *path)
     }
     FILE *out = file.stream;
     const struct nm_model *m = &t->model;
-    fprintf(out, "landmass-netem 3\narchitecture %s\nconnection %s\nmaterials",
+    fprintf(out, "landmass-netem 4\narchitecture %s\nconnection %s\nmaterials",
             m->architecture->name, nm_connection_names[m->architecture->connection]);
     for (uint32_t i = 0; i < t->materials.count; i++) {
         fprintf(out, " %s", t->materials.names[i]);
@@ -56,7 +60,8 @@ int nm_model_write(const struct nm_training *t, const char *path)
     write_plan(out, &t->plan);
     fprintf(out, "random %" PRIx64 " %" PRIx64 " %" PRIx64 " %" PRIx64 "\n", t->rng.s[0],
             t->rng.s[1], t->rng.s[2], t->rng.s[3]);
-    fprintf(out, "steps %ld\nepochs %d\n", t->optimizer.steps, t->epoch_count);
+    fprintf(out, "steps %ld\naveraged %d\nepochs %d\n", t->optimizer.steps, t->average.count,
+            t->epoch_count);
     for (int i = 0; i < t->epoch_count; i++) {
         const struct nm_epoch *e = &t->epochs[i];
         fprintf(out, "%d %a %a\n", (int)e->phase, e->training, e->validation);
@@ -65,6 +70,9 @@ int nm_model_write(const struct nm_training *t, const char *path)
     write_array(out, "values", m->values, m->size);
     write_array(out, "mean", t->optimizer.mean, m->size);
     write_array(out, "square", t->optimizer.square, m->size);
+    if (t->average.count > 0) {
+        write_array(out, "averages", t->average.mean, m->size);
+    }
     fputs("end\n", out);
     return hs_atomic_commit(&file);
 }
@@ -195,7 +203,7 @@ static int read_surfaces(struct db_text_file *f, struct nm_materials *m)
     return 0;
 }
 
-static int read_plan(struct db_text_file *f, struct nm_plan *p)
+static int read_plan(struct db_text_file *f, int version, struct nm_plan *p)
 {
     int loss, method;
     double epochs[NM_PHASES];
@@ -207,6 +215,10 @@ static int read_plan(struct db_text_file *f, struct nm_plan *p)
         read_count(f, "batch", 1, 1 << 20, &p->batch) != 0 ||
         read_count(f, "reach", 0, NM_PICTURE_SIDE_MAX, &p->reach_px) != 0 ||
         read_seed(f, &p->seed) != 0 || read_numbers(f, "plan", epochs, NM_PHASES) != 0) {
+        return -1;
+    }
+    p->average = 0;
+    if (version >= AVERAGING && read_number(f, "average", 0, 1, &p->average) != 0) {
         return -1;
     }
     p->loss = (enum nm_loss_kind)loss;
@@ -291,20 +303,24 @@ static int read_array(struct db_text_file *f, const char *name, double *numbers,
     return 0;
 }
 
-static int read_state(struct db_text_file *f, struct nm_training *t)
+static int read_state(struct db_text_file *f, int version, struct nm_training *t)
 {
     struct nm_model *m = &t->model;
     double steps;
+    int averaged = 0;
     const char *rest;
     if (read_random(f, &t->rng) != 0 || read_number(f, "steps", 0, 1e15, &steps) != 0 ||
+        (version >= AVERAGING && read_count(f, "averaged", 0, 1 << 30, &averaged) != 0) ||
         read_epochs(f, t) != 0 || read_array(f, "kernel", m->kernel, NM_LARGE * NM_LARGE) != 0 ||
         read_array(f, "values", m->values, m->size) != 0 ||
         read_array(f, "mean", t->optimizer.mean, m->size) != 0 ||
         read_array(f, "square", t->optimizer.square, m->size) != 0 ||
+        (averaged > 0 && read_array(f, "averages", t->average.mean, m->size) != 0) ||
         next_value(f, "end", &rest) != 0) {
         return -1;
     }
     t->optimizer.steps = (long)steps;
+    t->average.count = averaged;
     const enum nm_phase phase =
         t->epoch_count > 0 ? t->epochs[t->epoch_count - 1].phase : NM_PRETRAINING;
     m->is_pix_trainable = phase == NM_PIXELS;
@@ -327,23 +343,24 @@ static const struct nm_architecture *read_architecture(struct db_text_file *f, i
         db_text_error(f, remedy, "there is no architecture `%s`", name);
         return NULL;
     }
-    if (version > 2 && read_choice(f, "connection", nm_connection_names, &connection) != 0) {
+    if (version >= CONNECTING &&
+        read_choice(f, "connection", nm_connection_names, &connection) != 0) {
         return NULL;
     }
     return nm_architecture_find(name, (enum nm_connection)connection);
 }
 
-static int read_head(struct db_text_file *f, const struct nm_architecture **architecture,
-                     struct nm_materials *materials, struct nm_plan *plan)
+static int read_head(struct db_text_file *f, int *version,
+                     const struct nm_architecture **architecture, struct nm_materials *materials,
+                     struct nm_plan *plan)
 {
-    int version;
-    if (read_count(f, "landmass-netem", 1, 3, &version) != 0) {
+    if (read_count(f, "landmass-netem", 1, AVERAGING, version) != 0) {
         return -1;
     }
-    if (version < 2) {
+    if (*version < NAMING) {
         return db_text_error(f, "train again", "a file without the names of its materials");
     }
-    *architecture = read_architecture(f, version);
+    *architecture = read_architecture(f, *version);
     if (!*architecture || read_materials(f, materials) != 0 ||
         ((*architecture)->material == NM_AS_SURFACE && read_surfaces(f, materials) != 0)) {
         return -1;
@@ -352,7 +369,7 @@ static int read_head(struct db_text_file *f, const struct nm_architecture **arch
         return db_text_error(f, remedy, "`materials` has more names than %s knows",
                              (*architecture)->name);
     }
-    return read_plan(f, plan);
+    return read_plan(f, *version, plan);
 }
 
 int nm_model_read(struct nm_training *t, const char *path, int cells)
@@ -365,11 +382,11 @@ int nm_model_read(struct nm_training *t, const char *path, int cells)
     if (db_text_open(&f, path) != 0) {
         return -1;
     }
-    int result = read_head(&f, &architecture, &materials, &plan);
+    int version, result = read_head(&f, &version, &architecture, &materials, &plan);
     result = result == 0 ? nm_training_open(t, &plan, architecture, no_kernel, cells) : result;
     if (result == 0) {
         t->materials = materials;
-        result = read_state(&f, t);
+        result = read_state(&f, version, t);
         if (result != 0) {
             nm_training_close(t);
         }

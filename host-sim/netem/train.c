@@ -3,6 +3,7 @@
 #include "hs/error.h"
 
 #include <math.h>
+#include <stdbool.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -31,6 +32,7 @@ int nm_training_open(struct nm_training *t, const struct nm_plan *plan,
     t->optimizer.momentum = plan->momentum;
     if (nm_model_open(&t->model, architecture, kernel, &t->rng) != 0 ||
         nm_optimizer_open(&t->optimizer, t->model.size) != 0 ||
+        nm_average_open(&t->average, t->model.size) != 0 ||
         nm_simulator_open(&t->simulator, architecture, cells) != 0 ||
         nm_registrar_open(&t->registrar, cells / NM_CELLS_PER_PIXEL) != 0) {
         nm_training_close(t);
@@ -49,22 +51,37 @@ void nm_training_close(struct nm_training *t)
 {
     nm_model_close(&t->model);
     nm_optimizer_close(&t->optimizer);
+    nm_average_close(&t->average);
     nm_simulator_close(&t->simulator);
     nm_registrar_close(&t->registrar);
     free(t->gradient);
     t->gradient = NULL;
 }
 
-enum nm_phase nm_training_phase(const struct nm_training *t)
+/* Epochs done when the phase is. */
+static int end_of(const struct nm_plan *plan, enum nm_phase phase)
 {
     int end = 0;
-    for (int p = 0; p < NM_PHASES; p++) {
-        end += t->plan.epochs[p];
-        if (t->epoch_count < end) {
-            return (enum nm_phase)p;
-        }
+    for (int p = 0; p <= (int)phase; p++) {
+        end += plan->epochs[p];
     }
-    return NM_PHASES;
+    return end;
+}
+
+enum nm_phase nm_training_phase(const struct nm_training *t)
+{
+    int p = 0;
+    while (p < NM_PHASES && t->epoch_count >= end_of(&t->plan, (enum nm_phase)p)) {
+        p++;
+    }
+    return (enum nm_phase)p;
+}
+
+/* The epoch that goes on is one of those that are averaged. */
+static bool is_averaged(const struct nm_training *t, enum nm_phase phase)
+{
+    const long last = lround(t->plan.average * t->plan.epochs[phase]);
+    return phase != NM_PRETRAINING && t->epoch_count >= end_of(&t->plan, phase) - last;
 }
 
 static void enter_phase(struct nm_training *t, enum nm_phase phase)
@@ -154,6 +171,9 @@ static void change_values(struct nm_training *t, enum nm_phase phase, int visite
     } else {
         nm_optimizer_step(&t->optimizer, t->model.values, t->gradient, 0, weights);
     }
+    if (is_averaged(t, phase)) {
+        nm_average_add(&t->average, t->model.values);
+    }
     memset(t->gradient, 0, t->model.size * sizeof *t->gradient);
 }
 
@@ -225,6 +245,9 @@ int nm_training_epoch(struct nm_training *t, const struct nm_samples *training,
     free(order);
     if (result != 0) {
         return -1;
+    }
+    if (t->epoch_count + 1 == end_of(&t->plan, phase)) {
+        nm_average_take(&t->average, t->model.values);
     }
     epoch.validation = nm_training_validate(t, validation);
     t->epochs[t->epoch_count++] = epoch;

@@ -125,7 +125,16 @@ int main(int argc, char **argv)
     struct nm_target_view view;
     struct setup setup = setup_default();
     const int epochs = atoi(argv[2]);
-    const struct nm_plan plan = {NM_MSE, NM_ADAM, 1e-3, 1e-4, 0.9, BATCH, {0, epochs, 0}, 0, 1};
+    const struct nm_plan plan = {
+        .loss = NM_MSE,
+        .method = NM_ADAM,
+        .rate = 1e-3,
+        .pix_rate = 1e-4,
+        .momentum = 0.9,
+        .batch = BATCH,
+        .epochs = {0, epochs, 0},
+        .seed = 1,
+    };
     setup.model = "slicy";
     nm_kernel_make(setup.resolution_m, setup.cell_m, 0.2, kernel);
     if (nm_target_view_open(&view, &setup, setup.depression_deg) != 0 ||

@@ -15,7 +15,7 @@ struct nm_settings {
     double share;
     /* training */
     const char *architecture, *connection, *loss, *method;
-    double rate, pix_rate, momentum;
+    double rate, pix_rate, momentum, average;
     long batch, pretrain, epochs, pix_epochs, reach_px, seed;
 };
 
@@ -24,7 +24,7 @@ enum {
     NM_LAW_OPTIONS = 4,
     NM_TARGET_OPTIONS = NM_VIEW_OPTIONS + NM_LAW_OPTIONS + 1,
 };
-enum { NM_CHIP_OPTIONS = 8, NM_TRAIN_OPTIONS = 13 };
+enum { NM_CHIP_OPTIONS = 8, NM_TRAIN_OPTIONS = 14 };
 
 /* The defaults that --help names. */
 struct nm_settings nm_settings_default(void);

@@ -1,10 +1,12 @@
 /* Training as Niu describes it (III-C.4): a few epochs on the simulator's own picture of step 4, so
  * that the networks make pictures that can be registered; then real chips, registered by phase
  * correlation, with the fixed kernel; at last the trainable kernels, with the reflection networks
- * frozen. */
+ * frozen. Each phase but the first may end on the mean of its last values (average.h), which the
+ * paper does not do. */
 #ifndef NETEM_TRAIN_H
 #define NETEM_TRAIN_H
 
+#include "netem/average.h"
 #include "netem/loss.h"
 #include "netem/optimizer.h"
 #include "netem/registration.h"
@@ -39,7 +41,8 @@ struct nm_plan {
     double momentum; /* of SGD */
     int batch;       /* chips between two changes of values */
     int epochs[NM_PHASES];
-    int reach_px; /* registration looks so far from a sample's origin; 0 takes it as it is */
+    double average; /* share of a phase's epochs, its last, over whose steps values are averaged */
+    int reach_px;   /* registration looks so far from a sample's origin; 0 takes it as it is */
     uint64_t seed;
 };
 
@@ -55,6 +58,7 @@ struct nm_training {
     struct nm_materials materials; /* that the networks know; none until the caller says */
     struct nm_model model;
     struct nm_optimizer optimizer;
+    struct nm_average average; /* of the phase that goes on */
     struct hs_rng rng;
     struct nm_epoch epochs[NM_EPOCHS_MAX];
     int epoch_count; /* done so far */

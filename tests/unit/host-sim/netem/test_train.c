@@ -335,6 +335,49 @@ TEST(the_phases_follow_the_plan_and_the_pixels_come_last)
     close_world(&w);
 }
 
+/* With one change an epoch, the values after each are those between which the mean is taken. */
+static void end_on_mean(enum nm_phase phase)
+{
+    struct world plain, averaged;
+    struct nm_plan plan = short_plan;
+    plan.batch = TRAINING;
+    memcpy(plan.epochs, (int[NM_PHASES]){1, 0, 0}, sizeof plan.epochs);
+    plan.epochs[phase] = 4;
+    open_world(&plain, &plan, "EP8", 4);
+    plan.average = 0.5;
+    open_world(&averaged, &plan, "EP8", 4);
+    const size_t size = plain.training->model.size;
+    double *sum = calloc(size, sizeof *sum);
+    run(&plain, plain.training, 3);
+    run(&averaged, averaged.training, 4);
+    for (int last = 0; last < 2; last++) {
+        run(&plain, plain.training, 1);
+        for (size_t i = 0; i < size; i++) {
+            sum[i] += plain.training->model.values[i];
+        }
+        assert_int_equal(memcmp(plain.training->model.values, averaged.training->model.values,
+                                size * sizeof *sum) == 0,
+                         last == 0); /* until the end of the phase nothing is changed */
+        run(&averaged, averaged.training, 1);
+    }
+    for (size_t i = 0; i < size; i++) {
+        assert_true(fabs(sum[i] / 2 - averaged.training->model.values[i]) < 1e-14);
+    }
+    assert_int_equal(averaged.training->average.count, 0); /* the next phase has its own mean */
+    const struct nm_samples others = {averaged.samples + TRAINING, CHIPS - TRAINING};
+    assert_true(averaged.training->epochs[4].validation ==
+                nm_training_validate(averaged.training, &others));
+    free(sum);
+    close_world(&plain);
+    close_world(&averaged);
+}
+
+TEST(a_phase_ends_on_the_mean_of_its_last_epochs)
+{
+    end_on_mean(NM_REAL_CHIPS);
+    end_on_mean(NM_PIXELS);
+}
+
 /* A kernel free to change everywhere learns the target, which stands about each bright point. No
  * value may move by more than Adam's longest steps in proportion to the response there. */
 TEST(the_kernel_learns_nothing_where_the_radar_has_no_response)
@@ -359,9 +402,10 @@ TEST(a_training_that_was_killed_goes_on_to_the_same_bits)
 {
     char path[] = "/tmp/landmass-netem-XXXXXX";
     struct nm_plan plan = short_plan;
-    plan.epochs[NM_REAL_CHIPS] = 2;
+    plan.epochs[NM_REAL_CHIPS] = 3;
     plan.epochs[NM_PIXELS] = 2;
-    for (int stop = 1; stop < 9; stop += 3) {
+    plan.average = 0.7; /* the killing after epoch 7 falls into the two that are averaged */
+    for (int stop = 1; stop < 10; stop += 3) {
         struct world w;
         struct nm_training *again = malloc(sizeof *again);
         const int fd = mkstemp(path);
@@ -372,8 +416,8 @@ TEST(a_training_that_was_killed_goes_on_to_the_same_bits)
         assert_int_equal(nm_model_read(again, path, CELLS), 0);
         assert_int_equal(again->epoch_count, stop);
         run(&w, again, 100);
-        assert_int_equal(again->epoch_count, 9);
-        assert_memory_equal(again->epochs, w.training->epochs, 9 * sizeof *again->epochs);
+        assert_int_equal(again->epoch_count, 10);
+        assert_memory_equal(again->epochs, w.training->epochs, 10 * sizeof *again->epochs);
         assert_memory_equal(again->model.values, w.training->model.values,
                             again->model.size * sizeof(double));
         nm_training_close(again);
@@ -415,7 +459,7 @@ TEST(a_file_says_how_its_networks_are_connected)
     assert_int_equal(nm_model_read(again, path, CELLS), -1);
     edit(path, "connection sideways", "connection coefficient"); /* one input less */
     assert_int_equal(nm_model_read(again, path, CELLS), -1);
-    edit(path, "landmass-netem 3", "landmass-netem 4");
+    edit(path, "landmass-netem 4", "landmass-netem 5");
     assert_int_equal(nm_model_read(again, path, CELLS), -1);
     free(again);
     close_world(&w);
@@ -423,7 +467,8 @@ TEST(a_file_says_how_its_networks_are_connected)
     unlink(path);
 }
 
-TEST(a_file_from_before_the_choice_multiplies_coefficients)
+/* Form 3 had no averages, form 2 no connection either. */
+TEST(a_file_of_an_older_form_says_what_it_said)
 {
     struct world w;
     char path[] = "/tmp/landmass-netem-XXXXXX";
@@ -431,14 +476,18 @@ TEST(a_file_from_before_the_choice_multiplies_coefficients)
     struct nm_training *again = malloc(sizeof *again);
     open_world(&w, &short_plan, "EP7", 0);
     assert_int_equal(nm_model_write(w.training, path), 0);
-    edit(path, "landmass-netem 3", "landmass-netem 2");
-    assert_int_equal(nm_model_read(again, path, CELLS), -1); /* such a file had no connection */
-    assert_int_equal(support_run("sed -i '/^connection /d' %s", path), 0);
-    assert_int_equal(nm_model_read(again, path, CELLS), 0);
-    assert_ptr_equal(again->model.architecture, nm_architecture_find("EP7", NM_BY_COEFFICIENT));
-    assert_memory_equal(again->model.values, w.training->model.values,
-                        again->model.size * sizeof(double));
-    nm_training_close(again);
+    for (int form = 3; form >= 2; form--) {
+        const char *newer = form == 3 ? "average" : "connection";
+        assert_int_equal(support_run("sed -i '1s/.*/landmass-netem %d/' %s", form, path), 0);
+        assert_int_equal(nm_model_read(again, path, CELLS), -1);
+        assert_int_equal(support_run("sed -i '/^%s/d' %s", newer, path), 0);
+        assert_int_equal(nm_model_read(again, path, CELLS), 0);
+        assert_ptr_equal(again->model.architecture, nm_architecture_find("EP7", NM_BY_COEFFICIENT));
+        assert_true(again->plan.average == 0 && again->average.count == 0);
+        assert_memory_equal(again->model.values, w.training->model.values,
+                            again->model.size * sizeof(double));
+        nm_training_close(again);
+    }
     free(again);
     close_world(&w);
     close(fd);
