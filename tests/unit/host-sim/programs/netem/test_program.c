@@ -85,6 +85,16 @@ TEST(a_training_killed_at_any_epoch_ends_in_the_same_file)
     assert_int_equal(support_run(RECOVER " --resume --batch 9", b, folder, "cut"), 1);
 }
 
+TEST(a_training_keeps_the_share_of_epochs_that_it_averages)
+{
+    const char *b = support_build_dir();
+    assert_int_equal(support_run(RECOVER " --average 0.5", b, folder, "averaged"), 0);
+    assert_int_equal(support_run("grep -qx 'average 0x1p-1' %s/averaged/training.netem", folder),
+                     0);
+    assert_int_equal(support_run(RECOVER " --resume", b, folder, "averaged"), 1);
+    assert_int_equal(support_run(RECOVER " --resume --average 0.5", b, folder, "averaged"), 0);
+}
+
 TEST(trainings_are_drawn_together)
 {
     assert_int_equal(support_run("%s/bin/landmass-netem plot --training "
