@@ -105,7 +105,6 @@ static void open_devices(struct zcu102 *z)
 
 void zcu102_open(struct zcu102 *z)
 {
-    memset(z, 0, sizeof *z);
     open_console(z);
     open_devices(z);
     z->supervisor.watchdog = &z->watchdog;

@@ -56,8 +56,8 @@ struct zcu102 {
     uint32_t steps_left_out;
 };
 
-/* Initialise *z and every device. A device that does not answer is reported on the console, and the
- * unit runs without it. *z must not move. */
+/* Initialise *z, which is zero and must not move, and every device. A device that does not answer
+ * is reported on the console, and the unit runs without it. */
 void zcu102_open(struct zcu102 *z);
 
 /* Start the unit, whose time begins at 0. Returns the result of lm_unit_init. */

@@ -72,7 +72,30 @@ memset:
         orr     x1, x1, x1, lsl #8
         orr     x1, x1, x1, lsl #16
         orr     x1, x1, x1, lsl #32
-        subs    x2, x2, #64
+        cbnz    x1, 9f
+        cmp     x2, #320
+        b.lo    9f
+
+        // Many zeros: whole blocks of the cache at a time, 64 bytes each on this core. What lies
+        // before the first block and behind the last is stored.
+        add     x2, x2, x3              // the end
+        stp     xzr, xzr, [x3]
+        stp     xzr, xzr, [x3, #16]
+        stp     xzr, xzr, [x3, #32]
+        stp     xzr, xzr, [x3, #48]
+        add     x3, x3, #64
+        and     x3, x3, #~63
+        sub     x2, x2, x3
+        sub     x2, x2, #256
+0:      .rept   4
+        dc      zva, x3
+        add     x3, x3, #64
+        .endr
+        subs    x2, x2, #256
+        b.hs    0b
+        add     x2, x2, #256
+
+9:      subs    x2, x2, #64
         b.lo    2f
 1:      stp     x1, x1, [x3]
         stp     x1, x1, [x3, #16]

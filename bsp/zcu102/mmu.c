@@ -1,5 +1,7 @@
 #include "mmu.h"
 
+#include "sections.h"
+
 #include <stddef.h>
 #include <stdint.h>
 
@@ -75,8 +77,8 @@ static void map_memory(struct tables *t)
 
 const void *zcu102_mmu_build(void)
 {
-    /* In .bss, which start.S has cleared: what is not mapped here faults. */
-    static struct tables tables __attribute__((aligned(4096)));
+    /* start.S has cleared it: what is not mapped here faults. */
+    static ZCU102_TABLES struct tables tables;
     struct tables *t = &tables;
     map_memory(t);
     map_blocks(t->high_blocks, 0xF9000000u, 0xF9200000u, DEVICE); /* interrupt controller */

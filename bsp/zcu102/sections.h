@@ -1,4 +1,5 @@
-/* Memory sections for large variables (linker/zcu102.ld). None of them is cleared at the start. */
+/* Memory sections for large variables (linker/zcu102.ld). None of them is cleared at the start, but
+ * the tables. */
 #ifndef ZCU102_SECTIONS_H
 #define ZCU102_SECTIONS_H
 
@@ -10,5 +11,8 @@
 
 /* Memory that keeps its contents across a reset. */
 #define ZCU102_KEPT __attribute__((section(".bss._kept"), aligned(64)))
+
+/* Translation tables: cleared first, for all other variables are cleared with the MMU on. */
+#define ZCU102_TABLES __attribute__((section(".bss._tables"), aligned(4096)))
 
 #endif

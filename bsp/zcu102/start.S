@@ -1,4 +1,4 @@
-/* From reset to main: exception level 1, stacks, cleared variables, translation tables, caches.
+/* From reset to main: exception level 1, stacks, translation tables, caches, cleared variables.
  * Registers are those of the Arm Architecture Reference Manual for A-profile (DDI 0487), chapter D.
  *
  * Started at EL1 or EL2 by the boot firmware (FSBL and Trusted Firmware-A), which owns EL3 and
@@ -53,11 +53,19 @@ at_el1:
         ldr     x0, =__stack_top
         mov     sp, x0
 
-        ldr     x0, =__bss_start
-        ldr     x1, =__bss_end
+        ldr     x0, =__tables_start
+        ldr     x1, =__tables_end
 1:      stp     xzr, xzr, [x0], #16
         cmp     x0, x1
         b.lo    1b
+        bl      zcu102_mmu_build
+        bl      zcu102_mmu_enable
+
+        ldr     x0, =__bss_start
+        mov     x1, #0
+        ldr     x2, =__bss_end
+        sub     x2, x2, x0
+        bl      memset
 
         // Painted, so that the deepest use can be read off later (stack.h).
         ldr     x0, =__stack_bottom
@@ -67,8 +75,6 @@ at_el1:
         cmp     x0, x1
         b.lo    1b
 
-        bl      zcu102_mmu_build
-        bl      zcu102_mmu_enable
         bl      main
 1:      wfi
         b       1b

@@ -52,7 +52,14 @@ static void fill(const struct lm_pen *pen, const struct lm_rectangle *r)
     const uint32_t colour = pen->colour; /* a pixel might alias the pen's */
     uint32_t *out = pen->surface.pixels + (size_t)r->top * stride;
     for (int32_t row = r->top; row < r->bottom; row++, out += stride) {
-        for (int32_t column = r->left; column < r->right; column++) {
+        int32_t column = r->left;
+        for (; column + 4 <= r->right; column += 4) {
+            out[column] = colour;
+            out[column + 1] = colour;
+            out[column + 2] = colour;
+            out[column + 3] = colour;
+        }
+        for (; column < r->right; column++) {
             out[column] = colour;
         }
     }

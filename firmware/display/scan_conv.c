@@ -236,7 +236,7 @@ static void mark_wedge(const struct lm_plane *plane, const struct lm_ppi *ppi,
                        const struct columns *columns)
 {
     const int32_t first = ppi->apex_x_px + columns->first, end = ppi->apex_x_px + columns->end;
-    const int64_t apex_q17 = (int64_t)ppi->apex_x_px << 17;
+    const int64_t apex_q17 = ppi->apex_x_px * (1LL << 17);
     const int32_t y = ppi->apex_y_px - 1 - rows->first, last_y = ppi->apex_y_px - rows->end;
     const int64_t before = LM_BLOCK_HEIGHT_PX - 1 - y % LM_BLOCK_HEIGHT_PX; /* rows of the first */
     const int64_t last = LM_BLOCK_HEIGHT_PX - 1;

@@ -12,5 +12,7 @@ endif
 
 # A run of cells in one tile has four or five groups, in a tile that stands in for another too.
 $(O)/firmware/kernels/%/tile_read.o: OPT_core += -fno-unroll-loops
+# Eight times the same for a row need not stand there eight times.
+$(O)/firmware/kernels/arm64/tile_row.o: OPT_core := -O2
 # A rectangle is some blocks wide.
 $(O)/firmware/kernels/arm64/colour.o: OPT_core += -fno-unroll-loops

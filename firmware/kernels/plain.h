@@ -10,6 +10,7 @@
 
 extern __typeof__(lm_k_tile_read) lm_k_tile_read_c;
 extern __typeof__(lm_k_tile_blend) lm_k_tile_blend_c;
+extern __typeof__(lm_k_tile_row) lm_k_tile_row_c;
 extern __typeof__(lm_k_replace) lm_k_replace_c;
 extern __typeof__(lm_k_highest_tangent) lm_k_highest_tangent_c;
 extern __typeof__(lm_k_light) lm_k_light_c;

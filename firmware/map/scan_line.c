@@ -1,6 +1,7 @@
 #include "lm/scan_line.h"
 
 #include "lm/grown.h"
+#include "lm/seldom.h"
 #include "lm/tile_read.h"
 
 /* A line is walked from run to run. A run is a stretch of cells in one tile.
@@ -33,7 +34,6 @@ struct map_axis {
 /* Keep code that runs once a line, or seldom, out of line. It then takes no registers from the loop
  * of runs, which saves 140 instructions a line on the Cortex-A53. */
 #define OUT_OF_LINE __attribute__((noinline))
-#define SELDOM      __attribute__((noinline, cold)) /* made for size, not for speed */
 
 /* Walk of a line through the tiles of one LOD. */
 struct walk {
@@ -323,8 +323,9 @@ static void read_ancestor(const struct walk *w, const struct lm_tile_cache *tile
 
 /* Read a run whose tile was not found by lm_tile_cache_peek: from the tile, an ancestor, or
  * nothing. It is read at once, because an ancestor's coordinates are good for this run alone. */
-static SELDOM void read_substitute(const struct walk *w, struct lm_tile_cache *tiles, uint8_t lod,
-                                   uint32_t first, uint32_t end, struct lm_scan_line *line)
+static LM_SELDOM void read_substitute(const struct walk *w, struct lm_tile_cache *tiles,
+                                      uint8_t lod, uint32_t first, uint32_t end,
+                                      struct lm_scan_line *line)
 {
     const struct lm_tile *tile = lm_tile_cache_get(tiles, lod, w->north.tile, w->east.tile);
     if (!tile) {

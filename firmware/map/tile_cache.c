@@ -629,10 +629,11 @@ static void init(struct lm_tile_cache *c, const struct lm_db *db, const struct l
     for (uint32_t i = 0; i <= LM_TILE_SLOTS_MAX; i++) {
         c->slots[i].resident = LM_TILE_NO_NAME;
     }
-    for (uint32_t lod = 0; lod < LM_DB_LODS_MAX; lod++) {
-        for (uint32_t i = 0; i < LM_TILE_CHAINS; i++) {
-            c->heads[lod][i] = LM_SLOT_NONE;
-        }
+    for (uint32_t i = 0; i < LM_TILE_CHAINS; i++) {
+        c->heads[0][i] = LM_SLOT_NONE;
+    }
+    for (uint32_t lod = 1; lod < LM_DB_LODS_MAX; lod++) {
+        memcpy(c->heads[lod], c->heads[0], sizeof c->heads[lod]);
     }
 }
 

@@ -3,6 +3,7 @@
 #include <stddef.h>
 
 #include "fx/mem.h"
+#include "lm/kernels_map.h"
 
 enum { HEAD_BYTES = offsetof(struct lm_tile, points) };
 
@@ -22,29 +23,14 @@ int lm_tile_unpack_begin(struct lm_tile_unpack *u, struct lm_tile *tile, uint16_
     return LM_BUSY;
 }
 
-/* Put the strips of a row right. What is left of a post is its rise above the post south of it,
- * less the rise of the post west of it; all numbers are modulo 2^16, and row 0 rises from 0. Signs
- * stand in bit 0: 0, -1, 1, -2 ... are stored as 0, 1, 2, 3 ... */
+/* Make the points of a row where its strips stand; row 0 rises from 0. */
 static void put_right(struct lm_tile *tile, uint32_t row)
 {
-    struct lm_tile_point *points = tile->points[row];
-    uint8_t strips[4][LM_TILE_POINTS];
-    _Static_assert(sizeof strips == sizeof tile->points[0], "a row stays in its place");
-    memcpy(strips, points, sizeof strips);
-    /* Apart from the sums, loops of vectors. */
-    uint16_t cell[LM_TILE_POINTS], left[LM_TILE_POINTS];
-    for (int i = 0; i < LM_TILE_POINTS; i++) {
-        const uint16_t folded = (uint16_t)(strips[3][i] << 8 | strips[2][i]);
-        left[i] = (uint16_t)((folded >> 1) ^ (0 - (folded & 1)));
-        cell[i] = (uint16_t)(strips[0][i] << 8 | strips[1][i]);
-    }
     static const struct lm_tile_point below[LM_TILE_POINTS];
-    const struct lm_tile_point *south = row > 0 ? tile->points[row - 1] : below;
-    uint32_t rise = 0;
-    for (int i = 0; i < LM_TILE_POINTS; i++) {
-        rise += left[i];
-        points[i] = (struct lm_tile_point){cell[i], (uint16_t)(south[i].post + rise)};
-    }
+    struct lm_k_strips strips;
+    _Static_assert(sizeof strips == sizeof tile->points[0], "a row stays in its place");
+    memcpy(&strips, tile->points[row], sizeof strips);
+    lm_k_tile_row(tile->points[row], row > 0 ? tile->points[row - 1] : below, &strips);
 }
 
 int lm_tile_unpack_run(struct lm_tile_unpack *u)

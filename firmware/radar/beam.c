@@ -5,6 +5,7 @@
 #include "fx/log.h"
 #include "fx/sat.h"
 #include "lm/kernels_radar.h"
+#include "lm/seldom.h"
 
 _Static_assert((int)LM_BEAM_TAPS == LM_K_TAPS, "as many taps as lm/kernels_radar.h sums");
 
@@ -68,8 +69,8 @@ static uint32_t weigh(const struct lm_beam *b, const struct lm_radar *radar, int
 /* w_n = 2^(-8 x^2) / sum, x = N (a - a_n) / B, over the eight samples around the azimuth. They are
  * scaled by 2^48 / sum; a weight is at most the sum, so no product is above 2^48. What rounding
  * leaves of 65536 goes to a middle tap. */
-void lm_beam_set_taps(struct lm_beam *b, const struct lm_radar *radar, int32_t azimuth,
-                      uint32_t ratio_q8, struct lm_beam_taps *taps)
+LM_SELDOM void lm_beam_set_taps(struct lm_beam *b, const struct lm_radar *radar, int32_t azimuth,
+                                uint32_t ratio_q8, struct lm_beam_taps *taps)
 {
     const uint8_t fineness = fineness_of(ratio_q8);
     if (fineness != b->fineness) {

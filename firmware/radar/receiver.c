@@ -8,6 +8,7 @@
 #include "lm/geo.h"
 #include "lm/kernels_radar.h"
 #include "lm/noise.h"
+#include "lm/seldom.h"
 #include "lm/units.h"
 
 enum { GRAZING_MIN_Q24 = 1 << 16, GRAZING_MAX_Q24 = 1 << 25 };
@@ -118,9 +119,9 @@ static void set_pulse(struct lm_receiver *r, uint64_t length_q16)
     r->weight_q16[0] = left_q16; /* and the rest by rounding */
 }
 
-void lm_receiver_set(struct lm_receiver *r, const struct lm_radar *radar,
-                     const struct lm_slant *slant, int32_t height_m_q10, uint8_t range_index,
-                     enum lm_fov fov)
+LM_SELDOM void lm_receiver_set(struct lm_receiver *r, const struct lm_radar *radar,
+                               const struct lm_slant *slant, int32_t height_m_q10,
+                               uint8_t range_index, enum lm_fov fov)
 {
     const struct lm_range_row *range = &radar->range[range_index];
     r->first_m_q8 = slant->first_m_q8;

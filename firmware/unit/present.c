@@ -172,7 +172,8 @@ static bool borrow_surface(struct lm_unit *u)
  * the frame is complete. */
 static bool compose_some(struct lm_unit *u, uint32_t lines_left)
 {
-    const uint32_t limit = u->board->glass_step_px;
+    /* Nothing is on the first picture yet, so that a pixel of it costs an eighth of others. */
+    const uint32_t limit = u->board->glass_step_px * (u->count.frames == 0 ? 8 : 1);
     const bool is_hurried = limit != 0 && ++u->frame_steps >= LM_FRAME_STEPS;
     u->count.frames_hurried += is_hurried;
     if (limit == 0 || is_hurried) {

@@ -201,9 +201,13 @@ static void restart_after_jump(struct lm_unit *u, uint64_t now_us)
 }
 
 /* Draw the lines that are due. Returns how many more the step has time for. */
+/* Where a picture takes several steps, no line comes before the first: the glass lights up sooner,
+ * with what it warns of. */
 static uint32_t draw_lines(struct lm_unit *u, uint64_t now_us)
 {
-    const bool may_draw = (u->flags & LM_FLAGS_NO_LINES) == 0 && !lm_tracking_holds_antenna(u);
+    const bool has_glass = u->board->glass_step_px == 0 || u->count.frames > 0;
+    const bool may_draw =
+        (u->flags & LM_FLAGS_NO_LINES) == 0 && !lm_tracking_holds_antenna(u) && has_glass;
     const struct lm_paced paced = lm_draw_due_lines(&u->picture, may_draw, now_us);
     u->count.lines += paced.lines;
     u->count.lines_dropped += paced.dropped;

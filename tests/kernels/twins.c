@@ -666,7 +666,8 @@ static void run_tone(const struct input *in, struct output *out, bool is_plain)
     out->room = in->cells;
 }
 
-/* Any rectangle of a small picture, in grey or in a tint. */
+/* Any rectangle of a small picture, in grey or in a tint; some are blank, but perhaps for a pixel.
+ */
 static void draw_colours(struct input *in)
 {
     const bool is_neutral = hs_rng_below(&in->rng, 2) != 0;
@@ -684,12 +685,17 @@ static void draw_colours(struct input *in)
     for (uint32_t n = 0; n < 5; n++) {
         in->number[n] = (int32_t)hs_rng_below(&in->rng, 24);
     }
+    if (in->number[3] < 8) {
+        memset(in->grain_q5[0], 0, sizeof in->grain_q5[0]);
+        in->grain_q5[0][hs_rng_below(&in->rng, ROOM)] = (int8_t)(in->number[3] / 4);
+    }
 }
 
 static void run_colour_area(const struct input *in, struct output *out, bool is_plain)
 {
     const uint32_t height = 1 + in->first % 6, most = ROOM / height - 24;
-    const uint32_t width = 1 + in->cells % most;
+    const uint32_t width =
+        in->number[4] < 12 ? 64 * (1 + in->cells % (most / 64)) : 1 + in->cells % most;
     const struct lm_k_area area = {.grey = (const uint8_t *)in->grain_q5[0] + in->number[0],
                                    .pixel = out->line[0] + in->number[1],
                                    .grey_stride = width,
@@ -701,9 +707,27 @@ static void run_colour_area(const struct input *in, struct output *out, bool is_
     out->room = ROOM;
 }
 
+static void draw_strips(struct input *in)
+{
+    for (uint32_t k = 0; k < ROOM; k++) {
+        in->cell[k] = (uint32_t)hs_rng_u64(&in->rng);
+        in->entry[k] = (uint32_t)hs_rng_u64(&in->rng);
+    }
+}
+
+static void run_tile_row(const struct input *in, struct output *out, bool is_plain)
+{
+    struct lm_k_strips strips;
+    memcpy(&strips, in->cell, sizeof strips);
+    TWIN(lm_k_tile_row)
+    ((struct lm_tile_point *)out->line[0], (const struct lm_tile_point *)in->entry, &strips);
+    out->end[0] = out->room = LM_TILE_POINTS;
+}
+
 static const struct kernel kernels[] = {
     {"lm_k_tile_read", draw_tiles, run_tile_read},
     {"lm_k_tile_blend", draw_blend, run_tile_blend},
+    {"lm_k_tile_row", draw_strips, run_tile_row},
     {"lm_k_replace", draw_classes, run_replace},
     {"lm_k_light", draw_light, run_light},
     {"lm_k_highest_tangent", draw_light, run_highest_tangent},

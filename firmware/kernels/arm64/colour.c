@@ -82,8 +82,46 @@ static void colour_tinted(const struct lm_k_colours *c, const struct lm_k_area *
     }
 }
 
+enum { BLANK_RUN = 64 };
+
+/* Is all of the area of grey 0, and of whole runs? The first picture is. */
+static bool is_blank(const struct lm_k_area *a)
+{
+    uint64x2_t any = vdupq_n_u64(0);
+    for (uint32_t row = 0; row < a->height && a->width % BLANK_RUN == 0; row++) {
+        const uint8_t *grey = a->grey + row * a->grey_stride;
+        for (const uint8_t *const end = grey + a->width; grey < end; grey += BLANK_RUN) {
+            const uint8x16x4_t g = vld1q_u8_x4(grey);
+            const uint8x16_t pair = vorrq_u8(g.val[0], g.val[1]);
+            any =
+                vorrq_u64(any, vreinterpretq_u64_u8(vorrq_u8(pair, vorrq_u8(g.val[2], g.val[3]))));
+        }
+        if ((vgetq_lane_u64(any, 0) | vgetq_lane_u64(any, 1)) != 0) {
+            return false;
+        }
+    }
+    return a->width % BLANK_RUN == 0;
+}
+
+static void fill(uint32_t colour, const struct lm_k_area *a)
+{
+    const uint32x4_t four = vdupq_n_u32(colour);
+    for (uint32_t row = 0; row < a->height; row++) {
+        uint32_t *pixel = a->pixel + row * a->pixel_stride;
+        for (const uint32_t *const end = pixel + a->width; pixel < end; pixel += BLANK_RUN) {
+            for (uint32_t n = 0; n < BLANK_RUN; n += 4) {
+                vst1q_u32(pixel + n, four);
+            }
+        }
+    }
+}
+
 void lm_k_colour_area(const struct lm_k_colours *colours, const struct lm_k_area *area)
 {
+    if (is_blank(area)) {
+        fill(colours->of_grey[0], area);
+        return;
+    }
     struct lm_k_area whole = *area, rest = *area;
     rest.width %= RUN;
     whole.width -= rest.width;

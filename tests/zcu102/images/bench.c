@@ -32,7 +32,7 @@ struct bench {
     struct instrument_sum steps[INSTRUMENT_MODES], frame_steps[INSTRUMENT_MODES];
     struct instrument_sum steady[INSTRUMENT_MODES]; /* frames of few steps, and of more */
     struct instrument_sum whole[INSTRUMENT_MODES];
-    uint64_t first_picture_us;
+    uint64_t start_us, first_picture_us; /* since reset */
 };
 
 static void add(struct instrument_sum *sum, uint64_t spent)
@@ -73,8 +73,8 @@ static void fly(struct bench *b)
             frame = 0;
         }
         if (frames == 0 && z->unit.count.frames != 0) {
-            const struct drv_timer since_reset = {.hz = z->timer.hz};
-            b->first_picture_us = drv_timer_us(&since_reset);
+            /* In QEMU an instruction is a nanosecond. What the instrument takes does not count. */
+            b->first_picture_us = b->start_us + instrument_now() / 1000;
         }
     }
 }
@@ -132,6 +132,8 @@ int main(void)
     b.z.lent.controls = &b.controls;
     zcu102_mask_interrupts();
     if (lm_unit_init(&b.z.unit, &b.z.lent) == LM_OK) {
+        const struct drv_timer since_reset = {.hz = b.z.timer.hz};
+        b.start_us = drv_timer_us(&since_reset);
         instrument_start();
         fly(&b);
         report(&b);

@@ -294,6 +294,34 @@ static void check_console(struct devices *d)
     claim(d, "what is typed on the console comes in its order", memcmp(got, "abc", 3) == 0);
 }
 
+/* Fill bytes first..end - 1 of a field of others, and look at all of it. */
+static bool fills(uint32_t first, uint32_t end, uint8_t byte)
+{
+    enum { FIELD = 1024, OTHER = 0xA5 };
+    static uint8_t field[FIELD] __attribute__((aligned(64)));
+    for (uint32_t i = 0; i < FIELD; i++) {
+        field[i] = OTHER;
+    }
+    bool is_right = memset(field + first, byte, end - first) == field + first;
+    for (uint32_t i = 0; i < FIELD; i++) {
+        is_right = is_right && field[i] == (i >= first && i < end ? byte : OTHER);
+    }
+    return is_right;
+}
+
+/* Of its own (memory.S): blocks of the cache, and what lies around them. */
+static void check_memset(struct devices *d)
+{
+    bool is_right = true;
+    for (uint32_t first = 0; first <= 130; first += 13) {
+        for (uint32_t bytes = 0; first + bytes <= 960; bytes += bytes < 280 ? 23 : 1 + bytes % 8) {
+            is_right =
+                is_right && fills(first, first + bytes, 0) && fills(first, first + bytes, 0x5A);
+        }
+    }
+    claim(d, "memset fills what it is told to, and nothing beside it", is_right);
+}
+
 int main(void)
 {
     static struct devices d;
@@ -301,6 +329,7 @@ int main(void)
     check_bus(&d);
     check_flash(&d);
     check_crc(&d);
+    check_memset(&d);
     check_link(&d);
     check_timer(&d);
     check_registers(&d);

@@ -127,4 +127,18 @@ void lm_k_tile_blend(const struct lm_k_blend *map, const struct lm_tile_coords *
  * last cell. Cost: 2 a cell. */
 void lm_k_replace(uint32_t classes, uint32_t by, uint32_t *cell, uint32_t cells);
 
+/* A row of a stored tile (docs/FORMATS.md, 1.6): reflectivity, class and height of its cells, and
+ * what is left of its posts, low and high bytes. */
+struct lm_k_strips {
+    uint8_t gamma[LM_TILE_POINTS], class_height[LM_TILE_POINTS], left_low[LM_TILE_POINTS],
+        left_high[LM_TILE_POINTS];
+};
+
+/* Make the points of a row of its strips. What is left of a post is its rise above the post south
+ * of it, less the rise of the post west of it; all numbers are modulo 2^16, and the first column
+ * rises from 0. Signs stand in bit 0: 0, -1, 1, -2 ... are stored as 0, 1, 2, 3 ... `points` and
+ * `south` have LM_TILE_POINTS; writes no more. Cost: 4 a point. */
+void lm_k_tile_row(struct lm_tile_point *points, const struct lm_tile_point *south,
+                   const struct lm_k_strips *strips);
+
 #endif

@@ -90,8 +90,8 @@ struct lm_board {
     void *tile_pool; /* 8-byte aligned */
     size_t tile_pool_bytes;
     uint8_t *plane;         /* one byte for each pixel of the display */
-    uint32_t glass_step_px; /* pixels that a step without lines composes, 4,096 or more;
-                               0: no limit */
+    uint32_t glass_step_px; /* pixels that a step without lines composes, 4,096 .. 2^20, of the
+                               first picture 8 times as many; 0: no limit */
     uint32_t noise_seed;    /* chooses the draws of speckle and noise, and nothing else; the seed
                                of the exercise replaces it */
     struct lm_glass_options options;
@@ -228,7 +228,8 @@ void lm_settings_give(const struct lm_unit *u, struct lm_settings *s);
  * - update the flags, and remove the picture if navigation or the image is lost;
  * - move view and cursor, and the range scale if it follows the cursor;
  * - start and finish reads of tiles, without waiting;
- * - draw at most LM_STEP_LINES lines;
+ * - draw at most LM_STEP_LINES lines, none before the first picture is shown unless
+ *   board->glass_step_px is 0;
  * - tell the other avionics what is due, at most LM_CONTROL_FRAMES_A_STEP,
  *   LM_SWAP_FRAMES_A_STEP and LM_REPORT_FRAMES_A_STEP frames;
  * - compose the glass, at most board->glass_step_px pixels, and show it when it is complete, every

@@ -82,8 +82,8 @@ static int present(void *ctx, const struct lm_damage *changed)
     return LM_OK;
 }
 
-static struct glass *begin(uint32_t buffers, uint32_t step_px, uint16_t width_px,
-                           uint16_t height_px)
+static struct glass *power_up(uint32_t buffers, uint32_t step_px, uint16_t width_px,
+                              uint16_t height_px)
 {
     struct glass *g = calloc(1, sizeof *g);
     assert_non_null(g);
@@ -99,6 +99,13 @@ static struct glass *begin(uint32_t buffers, uint32_t step_px, uint16_t width_px
         .has_borders = buffers == 2, .has_strobe = buffers != 1, .has_heading = true};
     assert_int_equal(lm_unit_init(&g->rig->unit, &b->lent), LM_OK);
     command(g->rig, range_10);
+    return g;
+}
+
+static struct glass *begin(uint32_t buffers, uint32_t step_px, uint16_t width_px,
+                           uint16_t height_px)
+{
+    struct glass *g = power_up(buffers, step_px, width_px, height_px);
     run(g->rig, 1);
     return g;
 }
@@ -232,6 +239,23 @@ TEST(a_whole_picture_is_spread_over_steps_and_shown_when_it_is_complete)
     assert_in_range(g->longest_us, (steps - 2) * STEP_US, (steps + 5) * STEP_US);
     assert_int_equal(g->differing, 0);
     assert_int_equal(g->rig->unit.count.frames_hurried, 0);
+    end(g);
+}
+
+/* What it warns of is the first thing to be seen. */
+TEST(the_first_picture_comes_in_few_steps_and_before_the_first_line)
+{
+    enum { STEPS = (SIDE * SIDE + 8 * STEP_PX - 1) / (8 * STEP_PX) };
+    struct glass *g = power_up(2, STEP_PX, SIDE, SIDE);
+    uint32_t steps = 0;
+    for (; g->presented == 0 && steps < 100; steps++) {
+        run(g->rig, STEP_US / 1e6);
+    }
+    assert_in_range(steps, STEPS, STEPS + 2); /* whole bands; and the list, noted in the last */
+    assert_int_equal(g->rig->unit.count.lines, 0);
+    run(g->rig, 0.5);
+    assert_true(g->rig->unit.count.lines > 0);
+    assert_int_equal(g->differing, 0);
     end(g);
 }
 
