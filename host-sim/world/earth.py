@@ -1,10 +1,10 @@
 """The ground of the whole Earth as three rasters that `landmass-db build` takes: classes.tif, gamma.tif and terrain.tif.
 
-Land and water are those of GSHHG's full shorelines, which GMT reads (packages gmt and gmt-gshhg-full). Relief is that of
-ETOPO at 20 minutes. What is finer than that is made up: fractal noise, as strong as the relief is rough around there, and
-dry and green land by latitude and height. It serves for size, seams, time and coasts, not for finding one's way inland.
+Land and water are those of GSHHG's full shorelines (package gmt-gshhg-full). Relief is that of ETOPO at 20 minutes. What is
+finer than that is made up: fractal noise, as strong as the relief is rough around there, and dry and green land by latitude and
+height. It serves for size, seams, time and coasts, not for finding one's way inland.
 
-    earth.py --relief FOLDER --out FOLDER [--step ARC-SECONDS] [--only WEST,SOUTH,EAST,NORTH]
+    earth.py --relief FOLDER --out FOLDER [--step ARC-SECONDS] [--only WEST,SOUTH,EAST,NORTH] [--jobs N]
     earth.py --check POINTS.csv ... --out FOLDER        # columns lon_deg,lat_deg,land: how many of them the rasters have right
 
 FOLDER of --relief holds etopo20data.gz: 540 rows from the south, 1,081 columns from 20 degrees 10 minutes east.
@@ -13,10 +13,10 @@ FOLDER of --relief holds etopo20data.gz: 540 rows from the south, 1,081 columns 
 import argparse
 import csv
 import gzip
+import math
+import multiprocessing
 import os
-import subprocess
 import sys
-import tempfile
 
 import numpy as np
 from osgeo import gdal
@@ -25,9 +25,40 @@ gdal.UseExceptions()
 CLASSES = ("soil", "asphalt", "concrete", "structure", "vegetation", "water")
 SOIL, VEGETATION, WATER = (CLASSES.index(name) for name in ("soil", "vegetation", "water"))
 EARTH_M = 6371000.0
-BLOCK = 2700  # pixels along a block's side: 250 MiB at most
+DEGREE_M = EARTH_M * math.pi / 180
+BLOCK = 1024  # pixels along a block's side: whole tiles of the rasters
+CACHED = 16384  # points at a time: what numpy makes on its way stays in the processor's cache
 GAMMA_DB = (-15, -40)  # of vegetation and of water, as in the class table
 COARSEST_M = 24000.0  # wavelength of the first octave: below what the relief resolves
+SAMPLES = 8  # of a wavelength at least; straight between them
+PRIMES = np.array([[0x9E3779B1], [0x85EBCA77], [0xC2B2AE3D]], dtype=np.uint32)  # one for each axis of a lattice
+GSHHG = "/usr/share/gmt-gshhg/binned_GSHHS_f.nc"
+SQUARE = 65535  # units along a side of GSHHG's squares of a degree
+WEST = 3  # GSHHG's number of that side
+GROUNDING_LINE = 6  # the level of Antarctica's other shore, below the ice
+LEVEL_OF_BITS = np.array([bits.bit_length() for bits in range(16)], dtype=np.uint8)
+
+
+class Block:
+    """A part of a raster of the Earth, north first. Rows and columns count from the raster's corner."""
+
+    def __init__(self, corner, step_s, row, column, shape):
+        (self.west, self.north), self.step_s = corner, step_s
+        self.row, self.column, self.shape = row, column, shape
+
+    def latitude(self, row):
+        """Of the middle of a row that counts from the block's first."""
+        return self.north - (self.row + row + 0.5) * self.step_s / 3600
+
+    def longitude(self, column):
+        return self.west + (self.column + column + 0.5) * self.step_s / 3600
+
+    def row_at(self, latitude):
+        """Where the middle of row 3 is 3.0, and its upper edge 2.5."""
+        return (self.north - latitude) * 3600 / self.step_s - 0.5 - self.row
+
+    def column_at(self, longitude):
+        return (longitude - self.west) * 3600 / self.step_s - 0.5 - self.column
 
 
 def read_relief(folder):
@@ -59,20 +90,19 @@ def bilinear(grid, latitude, longitude):
     y = np.where(y > 540, 540 + np.clip((latitude - 89.5) * 3 - 1, 0, 0.5) * 2, y)
     x = ((longitude - 20) % 360) * 3 + 0.5
     row, column = np.minimum(y.astype(int), 540), x.astype(int)
-    fy, fx = (y - row)[:, None].astype(np.float32), (x - column)[None, :].astype(np.float32)
-    low, high = grid[row], grid[row + 1]
-    south = low[:, column] * (1 - fx) + low[:, column + 1] * fx
-    north = high[:, column] * (1 - fx) + high[:, column + 1] * fx
-    return south * (1 - fy) + north * fy
+    fy, fx = (y - row)[:, None].astype(np.float32), (x - column).astype(np.float32)
+    line = grid[row] * (1 - fy) + grid[row + 1] * fy
+    return np.take(line, column, axis=1) * (1 - fx) + np.take(line, column + 1, axis=1) * fx
 
 
 def hashed(x, y, z, seed):
-    """A number in -1..1 for a point of a lattice."""
-    z = np.atleast_1d(z)  # numpy warns where a number alone overflows
-    h = x * np.uint32(0x9E3779B1) ^ y * np.uint32(0x85EBCA77) ^ z * np.uint32(0xC2B2AE3D) ^ np.uint32(seed)
-    h = (h ^ (h >> np.uint32(15))) * np.uint32(0x2C1B3C6D)
-    h = (h ^ (h >> np.uint32(12))) * np.uint32(0x297A2D39)
-    return (h ^ (h >> np.uint32(15))).astype(np.float32) * np.float32(2.0**-31) - np.float32(1)
+    """A number in -1..1 for a point of a lattice, whose coordinates were multiplied by PRIMES."""
+    h = x ^ y ^ z ^ np.uint32(seed)
+    for right, times in ((15, 0x2C1B3C6D), (12, 0x297A2D39)):
+        h ^= h >> np.uint32(right)
+        h *= np.uint32(times)
+    h ^= h >> np.uint32(15)
+    return h.astype(np.float32) * np.float32(2.0**-31) - np.float32(1)
 
 
 def noise(points, wavelength_m, seed):
@@ -81,77 +111,174 @@ def noise(points, wavelength_m, seed):
     cell = np.floor(at)
     f = (at - cell).astype(np.float32)
     f = f * f * (3 - 2 * f)
-    cell = cell.astype(np.uint32)
-    total = np.zeros(points.shape[1], dtype=np.float32)
-    for corner in range(8):
-        step = [(corner >> axis) & 1 for axis in range(3)]
-        weight = np.ones(points.shape[1], dtype=np.float32)
-        for axis in range(3):
-            weight *= f[axis] if step[axis] else 1 - f[axis]
-        total += weight * hashed(*(cell[axis] + np.uint32(step[axis]) for axis in range(3)), seed)
-    return total
+    low = cell.astype(np.uint32) * PRIMES
+    x, y, z = zip(low, low + PRIMES)
+    values = [hashed(a, b, c, seed) for a in x for b in y for c in z]
+    for along in f:  # of eight corners four are left, then two, then one
+        half = len(values) // 2
+        values = [low + along * (high - low) for low, high in zip(values[:half], values[half:])]
+    return values[0]
 
 
-def fractal(points, wavelength_m, shortest_m, seed):
-    """Octaves down to the shortest wavelength, each half as strong as the one before."""
-    total, strength = np.zeros(points.shape[1], dtype=np.float32), np.float32(1)
-    while wavelength_m >= shortest_m:
-        total += strength * noise(points, wavelength_m, seed)
+def noise_at(latitude, longitude, wavelength_m, seed):
+    """At rows of latitude and columns of longitude, degrees."""
+    phi, turn = np.radians(latitude)[:, None], np.radians(longitude)[None, :]
+    made = np.empty((latitude.size, longitude.size), dtype=np.float32)
+    some = max(CACHED // longitude.size, 1)
+    for row in range(0, latitude.size, some):
+        part = phi[row : row + some]
+        points = np.array([np.cos(part) * np.cos(turn), np.cos(part) * np.sin(turn), np.sin(part) + 0 * turn])
+        made[row : row + some] = noise(points.reshape(3, -1), wavelength_m, seed).reshape(-1, longitude.size)
+    return made
+
+
+def doubled(values):
+    """On a lattice twice as fine, straight between two points."""
+    for _ in range(2):
+        fine = np.empty((2 * values.shape[0] - 1, values.shape[1]), dtype=np.float32)
+        fine[::2] = values
+        fine[1::2] = (values[1:] + values[:-1]) / 2
+        values = fine.T
+    return values
+
+
+def samples_apart(wavelength_m, step_s):
+    """Pixels between the samples of an octave: a power of two."""
+    return 2 ** max(int(math.log2(wavelength_m / SAMPLES / (step_s / 3600 * DEGREE_M))), 0)
+
+
+def fractal(block, wavelength_m, shortest_m, seed):
+    """Octaves down to the shortest wavelength, each half as strong as the one before. Long ones are sampled at each second, fourth
+    ... pixel of the raster, not of the block, so that neighbouring blocks agree."""
+    apart = samples_apart(wavelength_m, block.step_s)
+    y, x = block.row % apart, block.column % apart  # from the first sample to the block
+    total = np.zeros([-(-(over + side) // apart) + 1 for over, side in zip((y, x), block.shape)], dtype=np.float32)
+    strength = np.float32(1)
+    while wavelength_m >= shortest_m or apart > 1:
+        if apart > samples_apart(wavelength_m, block.step_s):
+            total, apart = doubled(total), apart // 2
+        if wavelength_m >= shortest_m:
+            rows, columns = (apart * np.arange(count) - over for count, over in zip(total.shape, (y, x)))
+            total = total + strength * noise_at(block.latitude(rows), block.longitude(columns), wavelength_m, seed)
         wavelength_m, strength, seed = wavelength_m / 2, strength / 2, seed + 1
-    return total
+    return total[y : y + block.shape[0], x : x + block.shape[1]]
 
 
-def shores(west, south, east, north, step_s):
-    """GSHHG's levels at the middles of pixels, north first: 0 sea, 1 land, 2 lake, 3 island in it, 4 pond."""
-    with tempfile.TemporaryDirectory() as folder:
-        # -A1: what is smaller than a square kilometre is left out where pixels are larger, which halves the time.
-        words = ["gmt", "grdlandmask", "-Df", "-A%d" % (step_s >= 30), "-R%.9f/%.9f/%.9f/%.9f" % (west, east, south, north),
-                 "-I%gs" % step_s, "-r", "-N0/1/2/3/4", "-G%s/mask.nc=nb" % folder]
-        done = subprocess.run(words, cwd=folder, stdin=subprocess.DEVNULL, capture_output=True, text=True)
-        if done.returncode != 0:
-            sys.exit("earth: %s: %s; install gmt and gmt-gshhg-full" % (" ".join(words[:2]), done.stderr.strip()))
-        return gdal.Open(folder + "/mask.nc").ReadAsArray()
+class Shores:
+    """GSHHG's full shorelines as GMT keeps them: squares of a degree, the level of their corners, and the shores within."""
+
+    def __init__(self, path=GSHHG):
+        try:
+            group = gdal.OpenEx(path, gdal.OF_MULTIDIM_RASTER).GetRootGroup()
+        except RuntimeError as error:
+            sys.exit("earth: %s: %s; install gmt-gshhg-full" % (path, error))
+
+        def array(name):
+            return group.OpenMDArray(name).ReadAsArray()
+
+        self.corner = array("Embedded_node_levels_in_a_bin") >> 9 & 7  # of the south-west
+        self.first, self.count = array("Id_of_first_segment_in_a_bin"), array("N_segments_in_a_bin")
+        self.info, self.begin = array("Embedded_npts_levels_exit_entry_for_a_segment"), array("Id_of_first_point_in_a_segment")
+        self.x = array("Relative_longitude_from_SW_corner_of_bin").view(np.uint16)
+        self.y = array("Relative_latitude_from_SW_corner_of_bin").view(np.uint16)
+
+    def pieces(self, square):
+        """Straight pieces of the shores of a square: x, y, x, y in 0..1 from its south-west corner, and a bit for the level. Where a
+        shore meets the west side, a piece follows that side to the north: a shore bounds what lies right of its pieces."""
+        segments = slice(self.first[square], self.first[square] + self.count[square])
+        info, begin = self.info[segments], self.begin[segments]
+        count, level, entry, leave = info >> 9, info >> 6 & 7, info >> 3 & 7, info & 7
+        points = slice(begin[0], begin[-1] + count[-1])
+        x, y = self.x[points] / SQUARE, self.y[points] / SQUARE
+        begin = begin - begin[0]
+        end = begin + count - 1
+        bits = np.repeat(np.where(level == GROUNDING_LINE, 0, 1 << (level - 1)), count)
+        along = np.delete([x[:-1], y[:-1], x[1:], y[1:], bits[1:]], end[:-1], axis=1)
+        at = np.concatenate([begin[entry == WEST], end[leave == WEST]])
+        return np.hstack([along, [0 * y[at], y[at], 0 * y[at], 0 * y[at] + 1, bits[at]]])
+
+    def fill(self, level, square, top, left, side):
+        """Levels of a square whose north-west corner is there in pixels of `level`, and whose sides are so many pixels long."""
+        bits = np.zeros(level.shape, dtype=np.uint8)
+        bits[:, 0] = (1 << self.corner[square]) - 1
+        if self.count[square]:
+            xa, ya, xb, yb, bit = self.pieces(square)
+            xa, ya, xb, yb = left + xa * side, top + (1 - ya) * side, left + xb * side, top + (1 - yb) * side
+            first, end = (np.clip(np.ceil(pick(ya, yb)), 0, level.shape[0]).astype(int) for pick in (np.minimum, np.maximum))
+            crossed = end - first  # rows of pixels that a piece crosses
+            piece = np.repeat(np.arange(crossed.size), crossed)
+            row = np.arange(piece.size) - np.repeat(np.cumsum(crossed) - crossed - first, crossed)
+            x = xa[piece] + (row - ya[piece]) / (yb - ya)[piece] * (xb - xa)[piece]
+            column = np.maximum(np.ceil(x), 0).astype(int)
+            seen = column < level.shape[1]
+            np.bitwise_xor.at(bits, (row[seen], column[seen]), bit[piece][seen].astype(np.uint8))
+        level[:] = LEVEL_OF_BITS[np.bitwise_xor.accumulate(bits, axis=1)]
+
+    def levels(self, block):
+        """At the middles of pixels: 0 sea, 1 land, 2 lake, 3 island in it, 4 pond."""
+        made, side = np.zeros(block.shape, dtype=np.uint8), 3600 / block.step_s
+        rows, columns = block.shape
+        for north in range(math.ceil(block.latitude(0)), math.ceil(block.latitude(rows - 1)) - 1, -1):
+            for west in range(math.floor(block.longitude(0)), math.floor(block.longitude(columns - 1)) + 1):
+                y, x = block.row_at(north), block.column_at(west)
+                top, bottom = (min(max(math.ceil(at), 0), rows) for at in (y, block.row_at(north - 1)))
+                left, right = (min(max(math.ceil(at), 0), columns) for at in (x, block.column_at(west + 1)))
+                if top < bottom and left < right:
+                    self.fill(made[top:bottom, left:right], (90 - north) * 360 + west % 360, y - top, x - left, side)
+        return made
 
 
-def block_of(ground, west, north, columns, rows, step_s):
-    """Classes and heights of a block, north first."""
-    step = step_s / 3600.0
-    relief, rough = ground
-    level = shores(west, north - rows * step, west + columns * step, north, step_s)
-    latitude, longitude = north - (np.arange(rows) + 0.5) * step, west + (np.arange(columns) + 0.5) * step
-    height = np.where(level == 0, np.float32(0), bilinear(relief, latitude, longitude))
-    land = np.nonzero((level == 1) | (level == 3))
-    classes = np.full(level.shape, WATER, dtype=np.uint8)
-    if land[0].size:
-        phi, turn = np.radians(latitude[land[0]]), np.radians(longitude[land[1]])
-        points = np.array([np.cos(phi) * np.cos(turn), np.cos(phi) * np.sin(turn), np.sin(phi)])
-        detail = fractal(points, COARSEST_M, 2 * step * 111195, 1)
-        strength = 0.4 * bilinear(rough, latitude, longitude)[land] + 4
-        height[land] = np.maximum(height[land] + strength * detail, 1)
-        dry = 1.3 * np.exp(-(((np.abs(latitude[land[0]]) - 24) / 9) ** 2)) + 0.6 * fractal(points, 900000.0, 100000.0, 99)
-        bare = (dry > 0.8) | (height[land] > 3500 - 40 * np.abs(latitude[land[0]])) | (np.abs(latitude[land[0]]) > 74)
-        classes[land] = np.where(bare, SOIL, VEGETATION)
+def ground_of(block, shores, relief, rough):
+    """Classes and heights, north first."""
+    level = shores.levels(block)
+    classes, height = np.full(block.shape, WATER, dtype=np.uint8), np.zeros(block.shape, dtype=np.float32)
+    if level.any():
+        latitude, longitude = block.latitude(np.arange(block.shape[0])), block.longitude(np.arange(block.shape[1]))
+        is_land, from_equator = (level == 1) | (level == 3), np.abs(latitude)[:, None].astype(np.float32)
+        height = np.where(level == 0, 0, bilinear(relief, latitude, longitude))
+        detail = fractal(block, COARSEST_M, 2 * block.step_s / 3600 * DEGREE_M, 1)
+        strength = 0.4 * bilinear(rough, latitude, longitude) + 4
+        height = np.where(is_land, np.maximum(height + strength * detail, 1), height)
+        dry = 1.3 * np.exp(-(((from_equator - 24) / 9) ** 2)) + 0.6 * fractal(block, 900000.0, 100000.0, 99)
+        bare = (dry > 0.8) | (height > 3500 - 40 * from_equator) | (from_equator > 74)
+        classes[is_land] = np.where(bare, SOIL, VEGETATION)[is_land]
     return classes, np.rint(height).astype(np.int16)
 
 
 def gamma_of(classes, row, column):
     """Reflectivity of a block, whole dB: the class's mean at X band, and a spread over pixels and over squares of eight. Without
     it `build` draws 16 values for each cell, which takes four times as long as all the rest."""
-    mean, spread = np.full(6, -20, np.float32), np.full(6, 3, np.float32)
+    mean, spread = np.full(6, -20, dtype=np.float32), np.float32(3)
     mean[VEGETATION], mean[WATER] = GAMMA_DB
-    y, x = (np.arange(row, row + classes.shape[0], dtype=np.uint32)[:, None],
-            np.arange(column, column + classes.shape[1], dtype=np.uint32)[None, :])
-    rank = sum(hashed(x >> np.uint32(far), y >> np.uint32(far), np.uint32(far), seed) for far, seed in ((0, 7), (0, 8), (3, 9)))
-    return np.rint(mean[classes] + spread[classes] * rank).astype(np.int16)
+    high, wide = classes.shape
+
+    def rank(far, seed):
+        """A number for each square of 2^far pixels."""
+        y = np.arange(row >> far, (row + high - 1 >> far) + 1, dtype=np.uint32)[:, None]
+        x = np.arange(column >> far, (column + wide - 1 >> far) + 1, dtype=np.uint32)
+        return hashed(x * PRIMES[0], y * PRIMES[1], np.uint32(far) * PRIMES[2], seed)
+
+    total = rank(0, 7) + rank(0, 8) + np.repeat(np.repeat(rank(3, 9), 8, axis=0), 8, axis=1)[:high, :wide]
+    return np.rint(mean[classes] + spread * total).astype(np.int16)
 
 
 def new_raster(path, columns, rows, west, north, step, kind):
-    options = ["TILED=YES", "COMPRESS=DEFLATE", "PREDICTOR=%d" % (2 if kind == gdal.GDT_Int16 else 1), "BIGTIFF=IF_SAFER"]
+    options = ["TILED=YES", "COMPRESS=DEFLATE", "ZLEVEL=1", "PREDICTOR=%d" % (2 if kind == gdal.GDT_Int16 else 1), "BIGTIFF=IF_SAFER"]
     raster = gdal.GetDriverByName("GTiff").Create(path, columns, rows, 1, kind, options)
     raster.SetProjection('GEOGCS["WGS 84",DATUM["WGS_1984",SPHEROID["WGS 84",6378137,298.257223563]],PRIMEM["Greenwich",0],'
                          'UNIT["degree",0.0174532925199433],AUTHORITY["EPSG","4326"]]')
     raster.SetGeoTransform((west, step, 0, north, 0, -step))
     return raster
+
+
+GROUND = []  # shores, relief and roughness: what the processes that `make` starts have of it
+
+
+def block_of(at):
+    """A block and its parts of the three rasters."""
+    block = Block(*at)
+    classes, heights = ground_of(block, *GROUND)
+    return block, (classes, heights, gamma_of(classes, block.row, block.column))
 
 
 def make(arguments):
@@ -160,19 +287,20 @@ def make(arguments):
     columns, rows = round((east - west) / step), round((north - south) / step)
     os.makedirs(arguments.out, exist_ok=True)
     relief = read_relief(arguments.relief)
+    GROUND.extend((Shores(), relief, roughness(relief)))
     names = [arguments.out + "/" + name for name in ("classes.tif", "terrain.tif", "gamma.tif")]
     rasters = [new_raster(name + ".part", columns, rows, west, north, step, kind)
                for name, kind in zip(names, (gdal.GDT_Byte, gdal.GDT_Int16, gdal.GDT_Int16))]
     rasters[0].GetRasterBand(1).SetCategoryNames(list(CLASSES))
     rasters[0].GetRasterBand(1).SetNoDataValue(255)
-    ground = relief, roughness(relief)
-    for row in range(0, rows, BLOCK):
-        for column in range(0, columns, BLOCK):
-            wide, high = min(BLOCK, columns - column), min(BLOCK, rows - row)
-            classes, heights = block_of(ground, west + column * step, north - row * step, wide, high, arguments.step)
-            for raster, values in zip(rasters, (classes, heights, gamma_of(classes, row, column))):
-                raster.GetRasterBand(1).WriteArray(values, column, row)
-            print("row %d of %d, column %d of %d" % (row, rows, column, columns), flush=True)
+    with multiprocessing.Pool(arguments.jobs) as pool:
+        for row in range(0, rows, BLOCK):  # row by row, so that blocks do not pile up before the files
+            across = [((west, north), arguments.step, row, column, (min(BLOCK, rows - row), min(BLOCK, columns - column)))
+                      for column in range(0, columns, BLOCK)]
+            for block, made in pool.imap(block_of, across):
+                for raster, values in zip(rasters, made):
+                    raster.GetRasterBand(1).WriteArray(values, block.column, block.row)
+            print("row %d of %d" % (min(row + BLOCK, rows), rows), flush=True)
     for raster in rasters:
         raster.FlushCache()
     del rasters, raster
@@ -207,6 +335,7 @@ def main():
     parser.add_argument("--out", metavar="FOLDER", required=True)
     parser.add_argument("--step", type=float, default=60, help="arc seconds between pixels (60)")
     parser.add_argument("--only", type=lambda text: tuple(float(word) for word in text.split(",")), default=(-180, -90, 180, 90))
+    parser.add_argument("--jobs", type=int, default=os.cpu_count(), help="processes that make blocks; one more writes them")
     parser.add_argument("--check", nargs="+", metavar="POINTS.csv")
     arguments = parser.parse_args()
     if arguments.check:

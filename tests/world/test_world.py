@@ -19,6 +19,9 @@ from osgeo import gdal, osr
 
 import cluster
 
+sys.path.insert(0, os.path.abspath("host-sim/world"))
+import earth  # noqa: E402
+
 gdal.UseExceptions()
 BUILD = os.path.abspath(os.environ.get("BUILD", "build/bench-linux"))
 TOP = os.path.abspath(".")
@@ -295,23 +298,74 @@ def faults_on_slurm(nodes, whole):
           log()[-3000:] + nodes.told())
 
 
+def levels_by_gmt(block):
+    """What GMT makes of the same shorelines."""
+    south, north = block.latitude(block.shape[0] - 0.5), block.latitude(-0.5)
+    west, east = block.longitude(-0.5), block.longitude(block.shape[1] - 0.5)
+    subprocess.run(["gmt", "grdlandmask", "-Df", "-R%.9f/%.9f/%.9f/%.9f" % (west, east, south, north), "-I%gs" % block.step_s, "-r",
+                    "-N0/1/2/3/4", "-Ggmt.nc=nb"], check=True, capture_output=True)
+    return gdal.Open("gmt.nc").ReadAsArray()
+
+
+def shores():
+    """Every pixel of places with much to get wrong, against GMT."""
+    if not shutil.which("gmt") or not os.path.exists(earth.GSHHG):
+        skip("shores against GMT's", "gmt or gmt-gshhg-full missing; make deps-world installs them")
+        return
+    all_shores = earth.Shores()
+    for name, corner, step_s, shape in (("islands in lakes, Finland", (20, 64), 20, (700, 700)),
+                                        ("the antimeridian, Fiji", (177, -15), 20, (720, 720)),
+                                        ("the ice front of Antarctica", (-70, -60), 60, (800, 1800)),
+                                        ("the south pole", (-180, -88), 60, (120, 21600)),
+                                        ("pixels that no degree is a multiple of, Sulawesi", (118.7, 2.3), 7, (900, 900))):
+        block = earth.Block(corner, step_s, 0, 0, shape)
+        wrong = np.count_nonzero(all_shores.levels(block) != levels_by_gmt(block))
+        # A shore may run through the very middle of a pixel, as one does in Antarctica.
+        check("shores against GMT's: " + name, wrong <= 2, "%d pixels of %d differ" % (wrong, shape[0] * shape[1]))
+
+
+def seams():
+    """Of made-up ground: blocks beside each other, the two sides of the antimeridian, and the pixels around a pole."""
+    def fractal(row, column, shape, octaves=(earth.COARSEST_M, 1200.0, 1)):
+        return earth.fractal(earth.Block((-180, 90), 20, row, column, shape), *octaves)
+
+    whole = fractal(7000, 9000, (200, 300))
+    parts = np.vstack([np.hstack([fractal(y, x, (high, wide)) for x, wide in ((9000, 131), (9131, 169))])
+                       for y, high in ((7000, 77), (7077, 123))])
+    check("a block has the numbers of the four that it falls into", (whole == parts).all(), str(np.abs(whole - parts).max()))
+    around = 360 * 180
+    for octaves in ((earth.COARSEST_M, 1200.0, 1), (900000.0, 100000.0, 99)):
+        beyond, begin = fractal(5000, around - 40, (100, 80), octaves)[:, 40:], fractal(5000, 0, (100, 40), octaves)
+        check("east of the antimeridian the numbers are those of the west, octaves from %g m" % octaves[0],
+              np.abs(beyond - begin).max() < 1e-3, str(np.abs(beyond - begin).max()))
+    for name, row in (("north", 0), ("south", around // 2 - 1)):
+        ring = fractal(row, 0, (1, around))[0]
+        check("around the %s pole no pixel stands out" % name, np.abs(ring - np.roll(ring, 1)).max() < 0.01,
+              str(np.abs(ring - np.roll(ring, 1)).max()))
+    block = earth.Block((-180, 90), 20, 7000, 9000, whole.shape)
+    rows, columns = (np.arange(side) for side in whole.shape)
+    exact = sum(0.5**k * earth.noise_at(block.latitude(rows), block.longitude(columns), earth.COARSEST_M / 2**k, 1 + k) for k in range(5))
+    check("straight between samples, octaves are what they are at each pixel", np.abs(whole - exact).max() < 0.02,
+          str(np.abs(whole - exact).max()))
+
+
 def coasts():
     """Land and water of a real coast, against points that GMT answered from the same shorelines at full resolution."""
     data = os.environ.get("LANDMASS_DATA")
     name = "the shores of a world against 1,200 points of GSHHG"
-    if not shutil.which("gmt") or not os.path.exists("/usr/share/gmt-gshhg/binned_GSHHS_f.nc"):
-        skip(name, "gmt or gmt-gshhg-full missing; make deps-world installs them")
+    if not os.path.exists(earth.GSHHG):
+        skip(name, "gmt-gshhg-full missing; make deps-world installs it")
         return
     if not data:
         skip(name, "LANDMASS_DATA is not set")
         return
-    earth = [sys.executable, "-B", WORLD + "/earth.py"]
+    make = [sys.executable, "-B", WORLD + "/earth.py"]
     told = ""
     for box, place in (("7,43,8,44", "nice_N43E007"), ("-125,48,-124,49", "washington_N48W125")):
-        made = subprocess.run([*earth, "--relief", data + "/etopo20_global", "--out", "ground", "--step", "20", "--only=" + box],
+        made = subprocess.run([*make, "--relief", data + "/etopo20_global", "--out", "ground", "--step", "20", "--only=" + box],
                               capture_output=True, text=True)
         told += made.stderr + subprocess.run(
-            [*earth, "--check", "%s/gshhg_coasts/derived_points_land_%s.csv" % (data, place), "--out", "ground"],
+            [*make, "--check", "%s/gshhg_coasts/derived_points_land_%s.csv" % (data, place), "--out", "ground"],
             capture_output=True, text=True).stdout
     right = [int(line.split()[1]) for line in told.splitlines()]
     check(name, len(right) == 2 and min(right) >= 590 and told.count(" 0 wrong elsewhere") == 2, told)
@@ -373,6 +427,8 @@ def main():
                 skip("two nodes of Slurm", missing)
             else:
                 on_slurm(whole)
+        shores()
+        seams()
         coasts()
         eased()
         os.chdir("/")
