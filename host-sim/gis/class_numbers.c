@@ -200,10 +200,10 @@ static int judge(const struct db_class_numbers *n, const struct census *c, const
     return 0;
 }
 
-int db_class_numbers_read(struct db_class_numbers *n, GDALRasterBandH band, const char *path,
-                          const struct db_class_table *table, bool ignores_names)
+/* The names, which the caller frees; NULL when the band has none or is not asked for them. */
+static char **match_band(struct db_class_numbers *n, GDALRasterBandH band,
+                         const struct db_class_table *table, bool ignores_names)
 {
-    struct census c;
     memset(n->class_of, DB_CLASS_UNKNOWN, sizeof n->class_of);
     n->class_of[DB_CLASS_NODATA] = DB_CLASS_NODATA;
     n->are_named = false;
@@ -214,6 +214,20 @@ int db_class_numbers_read(struct db_class_numbers *n, GDALRasterBandH band, cons
     if (!n->are_named) {
         go_by_number(n, table);
     }
+    return names;
+}
+
+void db_class_numbers_match(struct db_class_numbers *n, GDALRasterBandH band,
+                            const struct db_class_table *table, bool ignores_names)
+{
+    CSLDestroy(match_band(n, band, table, ignores_names));
+}
+
+int db_class_numbers_read(struct db_class_numbers *n, GDALRasterBandH band, const char *path,
+                          const struct db_class_table *table, bool ignores_names)
+{
+    struct census c;
+    char **names = match_band(n, band, table, ignores_names);
     int result = count_band(&c, band, path) == 0 ? judge(n, &c, path, table, names) : -1;
     if (result == 0 && !n->are_named) {
         result = say_assumption(n, &c, band, path, table, ignores_names);

@@ -118,8 +118,12 @@ int resample_cover_set_codes(struct resample_cover *c, const struct db_code_map 
     return db_code_map_survey(codes, c->table, c->classes.band, c->classes.path);
 }
 
-int resample_cover_set_numbers(struct resample_cover *c, bool ignores_names)
+int resample_cover_set_numbers(struct resample_cover *c, bool ignores_names, bool is_known)
 {
+    if (is_known) {
+        db_class_numbers_match(&c->numbers, c->classes.band, c->table, ignores_names);
+        return 0;
+    }
     return db_class_numbers_read(&c->numbers, c->classes.band, c->classes.path, c->table,
                                  ignores_names);
 }

@@ -212,6 +212,20 @@ def workers():
           and os.listdir("made") == ["joined.lmdb"], str(os.listdir("made")))
 
 
+def reach():
+    """Four files of classes side by side, and one of them lost: shards that lie elsewhere do without it."""
+    names = []
+    for i in range(4):
+        names.append("classes%d.tif" % i)
+        values = numpy.random.default_rng(i).integers(0, 6, (300, 300)).astype(numpy.uint8)
+        raster(names[-1], 4326, 10 + i % 2 * 0.5, 45 - i // 2 * 0.5, 0.5 / 300, values, gdal.GDT_Byte)
+    gdal.BuildVRT("classes.vrt", names)
+    good("plan", "--classes", CLASSES, "--class-raster", "classes.vrt", "--flat", "--cell", "150", "--shards", "16", "--out", "reach.plan")
+    os.remove("classes3.tif")
+    made = [db("build", "--plan", "reach.plan", "--shard", words[1], "--out", "x.part").returncode == 0 for words in shards("reach.plan")]
+    check("a shard reads the class raster where it lies, and not all of it", 0 < sum(made) < len(made), str(made))
+
+
 def main():
     with tempfile.TemporaryDirectory() as work:
         os.chdir(work)
@@ -220,6 +234,7 @@ def main():
         refusals(options)
         changes()
         workers()
+        reach()
         # 61.875 north is a border of zones; 179.6 to 180.4 east.
         ground = hills((320, 320), 3)
         ground[100:130, 140:180] = -9999

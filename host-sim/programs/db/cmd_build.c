@@ -543,10 +543,12 @@ static int choose_heights(struct build_context *b)
     return result;
 }
 
+/* `is_known`: a plan has looked at which numbers or codes occur. */
 static int read_codes(struct build_context *b, const struct build_settings *s, bool is_known)
 {
     if (!s->map) {
-        return s->class_raster ? resample_cover_set_numbers(&b->cover, s->ignores_names) : 0;
+        return s->class_raster ? resample_cover_set_numbers(&b->cover, s->ignores_names, is_known)
+                               : 0;
     }
     if (db_code_map_read(&b->codes, s->map, &b->table) != 0) {
         return -1;
@@ -559,7 +561,7 @@ static int read_codes(struct build_context *b, const struct build_settings *s, b
             return -1;
         }
     }
-    if (is_known) { /* which codes occur was looked at by the plan */
+    if (is_known) {
         b->cover.codes = &b->codes;
         return 0;
     }

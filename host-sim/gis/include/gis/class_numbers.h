@@ -34,4 +34,8 @@ struct db_class_numbers {
 int db_class_numbers_read(struct db_class_numbers *n, GDALRasterBandH band, const char *path,
                           const struct db_class_table *table, bool ignores_names);
 
+/* Read the names alone, of a raster whose pixels were looked at before. */
+void db_class_numbers_match(struct db_class_numbers *n, GDALRasterBandH band,
+                            const struct db_class_table *table, bool ignores_names);
+
 #endif

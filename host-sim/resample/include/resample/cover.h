@@ -55,8 +55,9 @@ int resample_cover_judge(const struct resample_cover *c, bool is_trusted);
 int resample_cover_set_codes(struct resample_cover *c, const struct db_code_map *codes);
 
 /* From here on the class raster's pixels are class numbers, matched by name where the raster has
- * names. Returns 0, or -1 with the error reported (db_class_numbers_read). */
-int resample_cover_set_numbers(struct resample_cover *c, bool ignores_names);
+ * names. `is_known`: all of them were looked at before, and are not read once more. Returns 0, or
+ * -1 with the error reported (db_class_numbers_read). */
+int resample_cover_set_numbers(struct resample_cover *c, bool ignores_names, bool is_known);
 
 /* Say how large the image's finest cells are. Call once before resample_cover_tile. */
 void resample_cover_set_cell(struct resample_cover *c, uint8_t shift0);
