@@ -435,13 +435,25 @@ static double interpolate(const struct terrain_layer *layer, const struct patch 
 
 /* Pixels along one axis that a fitted post depends on, with their weights. */
 struct fit_axis {
+    double centre;
     int first, count;
     double weight[16];
 };
 
+/* Of the posts before: those of a column share one axis and those of a row the other, where the
+ * layer lies north up on the image's grid. */
+struct fit_axes {
+    struct fit_axis column[LM_TILE_POSTS], row;
+};
+
+/* `a` is that of another post, or zeroed. */
 static void set_fit_axis(struct fit_axis *a, const struct terrain_fit *fit, double cell,
                          double centre)
 {
+    if (a->count > 0 && a->centre == centre) {
+        return;
+    }
+    a->centre = centre;
     const double reach = terrain_fit_reach(cell);
     a->first = (int)ceil(centre - reach);
     a->count = (int)floor(centre + reach) - a->first + 1;
@@ -452,26 +464,26 @@ static void set_fit_axis(struct fit_axis *a, const struct terrain_fit *fit, doub
 
 /* A post fitted to the surface, no higher and no lower than the pixels that are less than a cell
  * from where it is drawn: flat water beside a cliff stays flat. NAN where a pixel is missing. */
-static double fitted(const struct terrain_layer *layer, const struct patch *p, double x, double y)
+static double fitted(const struct terrain_layer *layer, const struct patch *p, double x, double y,
+                     struct fit_axis *column, struct fit_axis *row)
 {
     const struct terrain_fit *fit = &layer->fit;
     const struct resample_window *w = &p->window;
-    struct fit_axis column, row;
-    set_fit_axis(&column, fit, fit->cell_x, x - 0.5);
-    set_fit_axis(&row, fit, fit->cell_y, y - 0.5);
-    if (column.first < w->x || column.first + column.count > w->x + w->width || row.first < w->y ||
-        row.first + row.count > w->y + w->height) {
+    set_fit_axis(column, fit, fit->cell_x, x - 0.5);
+    set_fit_axis(row, fit, fit->cell_y, y - 0.5);
+    if (column->first < w->x || column->first + column->count > w->x + w->width ||
+        row->first < w->y || row->first + row->count > w->y + w->height) {
         return (double)NAN;
     }
     double sum = 0.0, low = HUGE_VAL, high = -HUGE_VAL;
-    for (int r = 0; r < row.count; r++) {
-        const float *metres = p->metres + (size_t)(row.first + r - w->y) * (size_t)w->width +
-                              (size_t)(column.first - w->x);
-        const bool is_near_row = fabs(row.first + r + 0.5 - y) < 1.0 + fit->cell_y;
-        for (int c = 0; c < column.count; c++) {
+    for (int r = 0; r < row->count; r++) {
+        const float *metres = p->metres + (size_t)(row->first + r - w->y) * (size_t)w->width +
+                              (size_t)(column->first - w->x);
+        const bool is_near_row = fabs(row->first + r + 0.5 - y) < 1.0 + fit->cell_y;
+        for (int c = 0; c < column->count; c++) {
             const double here = (double)metres[c];
-            sum += row.weight[r] * column.weight[c] * here;
-            if (is_near_row && fabs(column.first + c + 0.5 - x) < 1.0 + fit->cell_x) {
+            sum += row->weight[r] * column->weight[c] * here;
+            if (is_near_row && fabs(column->first + c + 0.5 - x) < 1.0 + fit->cell_x) {
                 low = here < low ? here : low;
                 high = here > high ? here : high;
             }
@@ -494,10 +506,10 @@ static bool is_flat(const struct patch *p, double x, double y)
 
 /* Flat ground stays as it is, so that the sea ends where it did. */
 static double height_of_post(const struct terrain_layer *layer, const struct patch *p, double x,
-                             double y)
+                             double y, struct fit_axis *column, struct fit_axis *row)
 {
     const double metres =
-        layer->fit.is_on && !is_flat(p, x, y) ? fitted(layer, p, x, y) : (double)NAN;
+        layer->fit.is_on && !is_flat(p, x, y) ? fitted(layer, p, x, y, column, row) : (double)NAN;
     return isnan(metres) ? interpolate(layer, p, x, y) : metres;
 }
 
@@ -517,12 +529,14 @@ struct block {
 static void sample_patch(const struct terrain_layer *layer, const struct patch *p, struct work *w,
                          const struct block *b)
 {
+    struct fit_axes axes = {0};
     for (int r = b->row0; r <= b->row1; r++) {
         for (int c = b->column0; c <= b->column1; c++) {
             const int i = r * LM_TILE_POSTS + c;
             const enum terrain_state state = state_at(p, w->x[i], w->y[i]);
             if (state > w->state[i] && state >= TERRAIN_FILLED) {
-                w->metres[i] = height_of_post(layer, p, w->x[i], w->y[i]);
+                w->metres[i] =
+                    height_of_post(layer, p, w->x[i], w->y[i], &axes.column[c], &axes.row);
                 w->state[i] = (uint8_t)state;
             }
         }
