@@ -148,9 +148,21 @@ def on_this_machine(whole):
           told.count(" is made") == 6 - full + 1 and "more, some " in told and "image is made" in told and "Building DAG" not in told, told)
     check("with room again it goes on, and the image is right", done == 0 and digest("world.lmdb") == whole, log())
     clean()
-    done = ended(start("-j1", db=other_db("hungry", "export OPENBLAS_NUM_THREADS=1; ulimit -v 285000"), retries=0))
+    done = ended(start("-j1", db=other_db("hungry", hunger()), retries=0))
     check("a shard that runs out of memory is refused by its number", done != 0 and "out of memory" in log()
           and "could not be made" in log() and not parts(), log())
+
+
+def hunger():
+    """Shell words for the most address space in which each shard runs out of memory: libraries take most of it, and differ."""
+    landmass("plan", *OPTIONS.split(), "--shards", "6", "--out", "hungry.plan")
+    for limit_kb in range(320000, 200000, -1000):
+        words = "export OPENBLAS_NUM_THREADS=1; ulimit -v %d" % limit_kb
+        said = (subprocess.run(["sh", "-c", words + "; exec %s/bin/landmass-db build --plan hungry.plan --shard %d --out hungry.part"
+                                % (BUILD, shard)], capture_output=True, text=True).stderr for shard in range(6))
+        if all("out of memory" in text and "could not be made" in text for text in said):
+            return words
+    return "exit 3"
 
 
 def landmass(*words):
@@ -270,7 +282,7 @@ def faults_on_slurm(nodes, whole):
         return ended(start("--profile", WORLD + "/slurm", "world.lmdb", db=db, retries=retries, **cluster_run))
 
     for what, limits, words in (("a full disk", "trap '' XFSZ; ulimit -f 300", ("could not be made",)),
-                                ("a shard that runs out of memory", "export OPENBLAS_NUM_THREADS=1; ulimit -v 285000",
+                                ("a shard that runs out of memory", hunger(),
                                  ("out of memory", "could not be made"))):
         clean()
         done = run(other_db("poor", limits))
