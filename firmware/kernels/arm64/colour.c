@@ -84,11 +84,11 @@ static void colour_tinted(const struct lm_k_colours *c, const struct lm_k_area *
 
 enum { BLANK_RUN = 64 };
 
-/* Is all of the area of grey 0, and of whole runs? The first picture is. */
+/* Is all of an area of whole runs of grey 0? The first picture is. */
 static bool is_blank(const struct lm_k_area *a)
 {
     uint64x2_t any = vdupq_n_u64(0);
-    for (uint32_t row = 0; row < a->height && a->width % BLANK_RUN == 0; row++) {
+    for (uint32_t row = 0; row < a->height; row++) {
         const uint8_t *grey = a->grey + row * a->grey_stride;
         for (const uint8_t *const end = grey + a->width; grey < end; grey += BLANK_RUN) {
             const uint8x16x4_t g = vld1q_u8_x4(grey);
@@ -100,7 +100,7 @@ static bool is_blank(const struct lm_k_area *a)
             return false;
         }
     }
-    return a->width % BLANK_RUN == 0;
+    return true;
 }
 
 static void fill(uint32_t colour, const struct lm_k_area *a)
@@ -118,7 +118,7 @@ static void fill(uint32_t colour, const struct lm_k_area *a)
 
 void lm_k_colour_area(const struct lm_k_colours *colours, const struct lm_k_area *area)
 {
-    if (is_blank(area)) {
+    if (area->width % BLANK_RUN == 0 && is_blank(area)) {
         fill(colours->of_grey[0], area);
         return;
     }

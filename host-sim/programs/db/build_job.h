@@ -85,6 +85,9 @@ int build_job_plan(struct build_work *work, const struct build_context *b,
                    const struct build_settings *s, const struct build_extras *extras, int shards,
                    uint32_t memory_mib);
 
+/* Write a plan in one piece. Returns 0, or -1 with the error reported. */
+int build_job_write_plan(const struct build_work *work, const char *path);
+
 /* Make one shard of s->plan. */
 int build_job_shard(const struct build_settings *given);
 /* Read a plan and its options, which stay in `work`. */

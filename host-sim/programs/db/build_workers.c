@@ -2,7 +2,6 @@
 
 #include "build_parts.h"
 
-#include "build/work_sources.h"
 #include "hs/atomic_file.h"
 #include "hs/error.h"
 #include "hs/progress.h"
@@ -189,16 +188,6 @@ static int name_files(struct workers *w)
     return 0;
 }
 
-static int write_plan(const struct workers *w)
-{
-    FILE *out = fopen(w->plan, "w");
-    const bool is_good = out && build_work_write(w->work, out) == 0;
-    const bool is_closed = out && fclose(out) == 0;
-    return is_good && is_closed ? 0
-                                : hs_error(w->out, "free some space and run again",
-                                           "no plan can be written beside it: %s", strerror(errno));
-}
-
 static int join(const struct workers *w, struct build_context *b, const struct build_settings *s,
                 const struct build_extras *extras, struct build_report *report)
 {
@@ -251,9 +240,10 @@ int build_workers_image(struct build_context *b, const struct build_settings *s,
     if (build_job_plan(work, b, s, extras, shards, UINT32_MAX) != 0) {
         return -1;
     }
-    const int result = name_files(&w) == 0 && write_plan(&w) == 0 && make_parts(&w) == 0
-                           ? join(&w, b, s, extras, report)
-                           : -1;
+    const int result =
+        name_files(&w) == 0 && build_job_write_plan(work, w.plan) == 0 && make_parts(&w) == 0
+            ? join(&w, b, s, extras, report)
+            : -1;
     end(&w);
     return result;
 }

@@ -60,7 +60,7 @@ int build_job_plan(struct build_work *work, const struct build_context *b,
     return build_work_cut(work, b, shards, memory_mib, choices);
 }
 
-static int write_plan(const struct build_work *work, const char *path)
+int build_job_write_plan(const struct build_work *work, const char *path)
 {
     struct hs_atomic_file file;
     if (hs_atomic_open(&file, path) != 0) {
@@ -107,7 +107,7 @@ static int make_plan(struct build_context *b, const struct build_settings *s,
         result = build_job_plan(work, b, s, &extras, (int)s->shards, (uint32_t)s->memory_mib);
     }
     build_job_free_extras(&extras);
-    return result == 0 ? write_plan(work, s->out) : -1;
+    return result == 0 ? build_job_write_plan(work, s->out) : -1;
 }
 
 int db_cmd_plan(int argc, char **argv)
