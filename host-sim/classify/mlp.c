@@ -31,9 +31,11 @@ struct db_mlp_layer db_mlp_layer(const struct db_mlp *net, float *weights, int l
 size_t db_mlp_size(const struct db_mlp *net)
 {
     size_t size = 0;
+    int from = net->input_count;
     for (int i = 0; i <= net->layer_count; i++) {
-        const struct db_mlp_layer l = db_mlp_layer(net, NULL, i);
-        size += (size_t)l.to * (size_t)(l.from + 1);
+        const int to = i < net->layer_count ? net->hidden[i] : net->output_count;
+        size += (size_t)to * (size_t)(from + 1);
+        from = to;
     }
     return size;
 }

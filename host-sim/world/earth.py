@@ -1,4 +1,5 @@
-"""The ground of the whole Earth as three rasters that `landmass-db build` takes: classes.tif, gamma.tif and terrain.tif.
+"""The ground of the whole Earth as three rasters that `landmass-db build` takes, classes.tif, gamma.tif and terrain.tif, and
+the class table for them, earth.classes.
 
 Land and water are those of GSHHG's full shorelines (package gmt-gshhg-full). Relief is that of ETOPO at 20 minutes. What is
 finer than that is made up: fractal noise, as strong as the relief is rough around there, and dry and green land by latitude and
@@ -22,13 +23,14 @@ import numpy as np
 from osgeo import gdal
 
 gdal.UseExceptions()
-CLASSES = ("soil", "asphalt", "concrete", "structure", "vegetation", "water")
-SOIL, VEGETATION, WATER = (CLASSES.index(name) for name in ("soil", "vegetation", "water"))
+GAMMA_DB = {"soil": -20, "vegetation": -15, "water": -40}  # of the classes there are, as their table has it
+SOIL, VEGETATION, WATER = range(len(GAMMA_DB))
+HERE = os.path.dirname(os.path.realpath(__file__))
+TABLES = (HERE + "/../programs/db/classes/heaton6.classes", HERE + "/../heaton6.classes")  # of the sources, of the package
 EARTH_M = 6371000.0
 DEGREE_M = EARTH_M * math.pi / 180
 BLOCK = 512  # pixels along a block's side: whole tiles of the rasters
 CACHED = 16384  # points at a time: what numpy makes on its way stays in the processor's cache
-GAMMA_DB = (-15, -40)  # of vegetation and of water, as in the class table
 COARSEST_M = 24000.0  # wavelength of the first octave: below what the relief resolves
 SAMPLES = 8  # of a wavelength at least; straight between them
 PRIMES = np.array([[0x9E3779B1], [0x85EBCA77], [0xC2B2AE3D]], dtype=np.uint32)  # one for each axis of a lattice
@@ -248,8 +250,7 @@ def ground_of(block, shores, relief, rough):
 def gamma_of(classes, row, column):
     """Reflectivity of a block, whole dB: the class's mean at X band, and a spread over pixels and over squares of eight. Without
     it `build` draws 16 values for each cell, which takes four times as long as all the rest."""
-    mean, spread = np.full(6, -20, dtype=np.float32), np.float32(3)
-    mean[VEGETATION], mean[WATER] = GAMMA_DB
+    mean, spread = np.array(list(GAMMA_DB.values()), dtype=np.float32), np.float32(3)
     high, wide = classes.shape
 
     def rank(far, seed):
@@ -281,7 +282,25 @@ def block_of(at):
     return block, (classes, heights, gamma_of(classes, block.row, block.column))
 
 
+def table_of(path):
+    """What a class table says of the classes there are. With structures in it `build` would look for the direction of walls."""
+    wanted, kept = True, []
+    try:
+        with open(path) as file:
+            for line in file:
+                if line.startswith("["):
+                    wanted = line.split("]")[0][1:] in GAMMA_DB
+                kept += [line] * wanted
+    except OSError as error:
+        sys.exit("earth: %s; give the table that has %s with --table" % (error, ", ".join(GAMMA_DB)))
+    missing = [name for name in GAMMA_DB if not any(line.startswith("[%s]" % name) for line in kept)]
+    if missing:
+        sys.exit("earth: %s: there is no class %s; give a table that has %s" % (path, missing[0], ", ".join(GAMMA_DB)))
+    return "".join(kept)
+
+
 def make(arguments):
+    table = table_of(arguments.table)
     west, south, east, north = arguments.only
     step = arguments.step / 3600.0
     columns, rows = round((east - west) / step), round((north - south) / step)
@@ -291,7 +310,7 @@ def make(arguments):
     names = [arguments.out + "/" + name for name in ("classes.tif", "terrain.tif", "gamma.tif")]
     rasters = [new_raster(name + ".part", columns, rows, west, north, step, kind)
                for name, kind in zip(names, (gdal.GDT_Byte, gdal.GDT_Int16, gdal.GDT_Int16))]
-    rasters[0].GetRasterBand(1).SetCategoryNames(list(CLASSES))
+    rasters[0].GetRasterBand(1).SetCategoryNames(list(GAMMA_DB))
     rasters[0].GetRasterBand(1).SetNoDataValue(255)
     with multiprocessing.Pool(arguments.jobs) as pool:
         for row in range(0, rows, BLOCK):  # row by row, so that blocks do not pile up before the files
@@ -304,6 +323,8 @@ def make(arguments):
     for raster in rasters:
         raster.FlushCache()
     del rasters, raster
+    with open(arguments.out + "/earth.classes", "w") as file:
+        file.write(table)
     for name in names:
         for end in ("", ".aux.xml"):
             if os.path.exists(name + ".part" + end):
@@ -336,6 +357,8 @@ def main():
     parser.add_argument("--step", type=float, default=60, help="arc seconds between pixels (60)")
     parser.add_argument("--only", type=lambda text: tuple(float(word) for word in text.split(",")), default=(-180, -90, 180, 90))
     parser.add_argument("--jobs", type=int, default=os.cpu_count(), help="processes that make blocks; one more writes them")
+    parser.add_argument("--table", metavar="FILE", default=next(filter(os.path.exists, TABLES), TABLES[0]),
+                        help="class table of which earth.classes is made (heaton6.classes)")
     parser.add_argument("--check", nargs="+", metavar="POINTS.csv")
     arguments = parser.parse_args()
     if arguments.check:

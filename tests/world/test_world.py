@@ -383,6 +383,20 @@ def coasts():
     check(name, len(right) == 2 and min(right) >= 590 and told.count(" 0 wrong elsewhere") == 2, told)
 
 
+def class_table():
+    """The class table that earth.py writes beside its rasters."""
+    kept = earth.table_of(CLASSES)
+    sections = [line.strip() for line in kept.splitlines() if line.startswith("[")]
+    check("the Earth's class table has the classes of its rasters, in their order",
+          sections == ["[%s]" % name for name in earth.GAMMA_DB] and all("gamma_db = %d " % db in kept for db in earth.GAMMA_DB.values()))
+    try:
+        earth.table_of(__file__)
+        told = "nothing"
+    except SystemExit as error:
+        told = str(error)
+    check("a table without them is refused", "there is no class soil" in told, told)
+
+
 def plain(path, side_px, pixel_m, heights):
     """Terrain around 46 N 9 E, in UTM."""
     raster = gdal.GetDriverByName("GTiff").Create(path, side_px, side_px, 1, gdal.GDT_Float32)
@@ -442,6 +456,7 @@ def main():
         shores()
         seams()
         coasts()
+        class_table()
         eased()
         os.chdir("/")
     print("1..%d" % len(CHECKS))
