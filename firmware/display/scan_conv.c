@@ -367,41 +367,44 @@ struct lm_frame lm_patch_square(const struct lm_frame *frame)
 enum { LINE_Q20 = 1 << 20, SHARE_Q7 = 1 << 7, ROWS_AT_ONCE = 64 };
 
 /* Set the cells that a row lies between: row r of n is (r + 1/2) C / n - 1/2 above the middle of
- * cell 0, of C cells. */
+ * cell 0, of C cells. Sixteen rows lie among 2^10 * 15 / 183 + 1 cells at most, for no square has
+ * fewer than 183 rows: with what `first` is held back, below 2^8. */
 static void set_cells(struct lm_patch_painter *p, uint32_t row)
 {
+    struct lm_k_patch_cells *c = &p->row_cells;
     const uint32_t rows = p->square.height_px;
     const int64_t above_q7 =
         (int64_t)(2 * row + 1) * p->cells * SHARE_Q7 / (2 * rows) - SHARE_Q7 / 2;
     const int64_t last_q7 = (int64_t)(p->cells - 1) * SHARE_Q7;
     const uint32_t held_q7 = (uint32_t)fx_clamp_i64(above_q7, 0, last_q7);
-    p->cell[row] = (uint16_t)(held_q7 / SHARE_Q7);
-    p->part_q7[row] = (uint16_t)(held_q7 % SHARE_Q7);
+    const uint32_t cell = held_q7 / SHARE_Q7;
+    uint16_t *const first = &c->first[row / LM_K_PATCH_GROUP];
+    if (row % LM_K_PATCH_GROUP == 0) {
+        const uint32_t room = p->cells < LM_K_PATCH_CLOSE ? 0 : p->cells - LM_K_PATCH_CLOSE;
+        *first = (uint16_t)fx_min_u32(cell, room);
+    }
+    c->above[row] = (uint8_t)(cell - *first);
+    c->part_q7[row] = (uint8_t)(held_q7 % SHARE_Q7);
+    c->are_close = c->are_close && c->above[row] < LM_K_PATCH_CLOSE;
 }
 
-/* Set the lines of a row. Row r lies (2 r + 1) C / 2 n cells beyond the near edge, of C cells in n
+/* Lines a pixel in a row. Row r lies (2 r + 1) C / 2 n cells beyond the near edge, of C cells in n
  * rows. With S the range of the middle, s that of the row and ds a cell, a pixel is
  *
  *     C / n S / s lines = 2 C S / (2 n (S - C ds / 2) + (2 r + 1) C ds)
  *
  * Ranges are below 2^26, C and n at most 2^10: numerator and denominator are below 2^38. A pixel
  * that is more than 2^6 lines is at the antenna's feet, in no patch. */
-static void set_lines(struct lm_patch_painter *p, const struct lm_patch_fan *fan, uint32_t row)
+static int32_t step_q20_of(const struct lm_patch_painter *p, const struct lm_patch_fan *fan,
+                           uint32_t row)
 {
     const int64_t rows = p->square.height_px, side_m_q8 = (int64_t)fan->cells * fan->cell_m_q8;
     const int64_t middle = 2 * (int64_t)fan->cells * fan->centre_m_q8;
     const int64_t there =
         rows * (2 * (int64_t)fan->centre_m_q8 - side_m_q8) + (2 * (int64_t)row + 1) * side_m_q8;
     const int64_t most_q20 = (int64_t)LINE_Q20 << 6;
-    const int64_t step_q20 =
-        fx_clamp_i64(there > 0 ? middle * LINE_Q20 / there : most_q20, LINE_Q20 >> 6, most_q20);
-    /* The middle of the leftmost pixel lies (n - 1) / 2 pixels left of the square's middle, and
-     * line -1 (N + 1) / 2 lines. */
-    const int64_t start_q20 =
-        ((int64_t)fan->lines + 1) * (LINE_Q20 / 2) - (p->square.width_px - 1) * step_q20 / 2;
-    p->step_q20[row] = (int32_t)step_q20;
-    p->start_q20[row] = (int32_t)fx_clamp_i64(start_q20, 0, INT32_MAX / 2);
-    p->most_px = fx_max_u32(p->most_px, (uint32_t)((LINE_Q20 + step_q20 - 1) / step_q20));
+    const int64_t step_q20 = there > 0 ? middle * LINE_Q20 / there : most_q20;
+    return (int32_t)fx_clamp_i64(step_q20, LINE_Q20 >> 6, most_q20);
 }
 
 void lm_patch_painter_set(struct lm_patch_painter *p, const struct lm_frame *frame,
@@ -410,173 +413,78 @@ void lm_patch_painter_set(struct lm_patch_painter *p, const struct lm_frame *fra
     p->square = lm_patch_square(frame);
     p->lines = fan->lines;
     p->cells = fan->cells;
-    p->most_px = 0;
-    /* Whole groups of rows, as they are painted. */
-    for (uint32_t row = 0; row < (uint32_t)p->square.height_px + ROWS_AT_ONCE - 1; row++) {
-        set_cells(p, row % LM_PATCH_SIDE_MAX_PX);
-        set_lines(p, fan, row % LM_PATCH_SIDE_MAX_PX);
+    p->row_cells.are_close = fan->cells >= LM_K_PATCH_CLOSE;
+    const uint32_t rows = p->square.height_px;
+    uint32_t least_q20 = UINT32_MAX;
+    for (uint32_t row = 0; row < rows; row++) {
+        p->step_q20[row] = step_q20_of(p, fan, row);
+        least_q20 = fx_min_u32(least_q20, (uint32_t)p->step_q20[row]);
     }
+    for (uint32_t row = 0;
+         row < (rows + LM_K_PATCH_GROUP - 1) / LM_K_PATCH_GROUP * LM_K_PATCH_GROUP; row++) {
+        set_cells(p, row);
+    }
+    /* Over n lines lie n / step pixels, and one more at most where that is no whole number. */
+    const uint32_t lines = LM_K_STRIP_PX * least_q20 / LINE_Q20;
+    p->is_wide = lines == 0;
+    p->strip_lines = fx_min_u32(fx_max_u32(lines, 1), LM_K_STRIP_LINES);
 }
 
-/* Some rows of a strip, which lies between two lines. From its next pixel on, each row has four
- * pixels of it at most. */
-struct strip {
-    uint16_t grey[ROWS_AT_ONCE];        /* of the second line */
-    uint16_t column_px[ROWS_AT_ONCE];   /* of the next pixel */
-    uint16_t share_q7[4][ROWS_AT_ONCE]; /* of the second line in each pixel; all of it behind it */
-    /* Greys, two pixels in a number: the left one is the lower byte. */
-    uint16_t pair[ROWS_AT_ONCE][2];
-};
-
-/* Grey between two. A difference is below 2^8, times 2^7: 16 bits hold it. */
-static inline uint16_t grey_between(uint16_t first, uint16_t second, uint16_t share_q7)
+/* Begin at the left edge of each row. The middle of the leftmost of n pixels lies (n - 1) / 2
+ * pixels left of the square's middle, and line -1, which is equal to line 0, (N + 1) / 2 lines. */
+static void begin(struct lm_patch_painter *p, const uint8_t *grey)
 {
-    const int16_t more = (int16_t)((int16_t)(second - first) * (int16_t)share_q7 + SHARE_Q7 / 2);
-    return (uint16_t)(first + (more >> 7));
-}
-
-/* Greys of the second line at the middles of the rows. Two cells are read as one number, and four
- * rows at once: more are read before one is written, and a turn has little beside. */
-static inline void set_greys(const struct lm_patch_painter *p, uint32_t first, const uint8_t *grey,
-                             struct strip *s)
-{
-    const uint16_t *cell = p->cell + first;
-    for (uint16_t *to = s->grey; to != s->grey + ROWS_AT_ONCE; to += 4, cell += 4) {
-        const uint16_t a = fx_load_u16(grey + cell[0]), b = fx_load_u16(grey + cell[1]);
-        const uint16_t c = fx_load_u16(grey + cell[2]), d = fx_load_u16(grey + cell[3]);
-        to[0] = a;
-        to[1] = b;
-        to[2] = c;
-        to[3] = d;
-        __asm__("" : "+r"(to), "+r"(cell)); /* else all turns are written out: 1 kB */
-    }
-    for (uint32_t i = 0; i < ROWS_AT_ONCE; i++) {
-        s->grey[i] = grey_between(s->grey[i] & 255, s->grey[i] >> 8, p->part_q7[first + i]);
-    }
-}
-
-/* Shares of the second line in the next pixels of each row. Then move on, by the pixels that lie
- * before the second line: those whose shares are not whole. What is 2^8 lines beyond it shares as
- * what is farther does; three steps are 2^7.6 lines more, and in 128ths all takes 16 bits. */
-static inline void set_shares(struct lm_patch_painter *p, uint32_t first, uint32_t most_px,
-                              struct strip *s)
-{
-    for (uint32_t i = 0; i < ROWS_AT_ONCE; i++) {
-        const uint32_t step_q20 = (uint32_t)p->step_q20[first + i];
-        const uint32_t on_q20 = (uint32_t)p->on_q20[first + i];
-        const uint32_t near_q20 = fx_min_u32(on_q20, (uint32_t)LINE_Q20 << 8);
-        uint16_t count = 0;
-        for (uint32_t k = 0; k < most_px; k++) {
-            const uint16_t on_q7 = (uint16_t)((near_q20 + k * step_q20) >> 13);
-            const uint16_t share_q7 = on_q7 < SHARE_Q7 ? on_q7 : SHARE_Q7;
-            s->share_q7[k][i] = share_q7;
-            count = (uint16_t)(count + (share_q7 < SHARE_Q7));
-        }
-        s->column_px[i] = p->column_px[first + i];
-        p->column_px[first + i] = (uint16_t)(s->column_px[i] + count);
-        p->on_q20[first + i] = (int32_t)(on_q20 + count * step_q20 - LINE_Q20);
-    }
-}
-
-/* Greys of the next pixels of each row, which then lie side by side. */
-static inline void set_pairs(struct lm_patch_painter *p, uint32_t first, uint32_t most_px,
-                             struct strip *s)
-{
-    for (uint32_t i = 0; i < ROWS_AT_ONCE; i++) {
-        const uint16_t before = p->grey[first + i], here = s->grey[i];
-        for (uint32_t k = 0; k < most_px; k += 2) {
-            const uint16_t left = grey_between(before, here, s->share_q7[k][i]);
-            const uint16_t right = grey_between(before, here, s->share_q7[k + 1][i]);
-            s->pair[i][k / 2] = (uint16_t)(left | right << 8);
-        }
-    }
-}
-
-/* True if no row ends within the next `most_px` pixels. */
-static inline bool are_whole(const struct strip *s, uint32_t rows, uint32_t most_px, uint32_t right)
-{
-    uint16_t farthest = 0;
-    for (uint32_t i = 0; i < rows; i++) {
-        farthest = s->column_px[i] > farthest ? s->column_px[i] : farthest;
-    }
-    return farthest + most_px <= right;
-}
-
-/* Store the pixels of `rows` rows. If one of them ends, each is stored pixel by pixel. */
-static inline void store(struct lm_patch_painter *p, uint32_t first, uint32_t rows,
-                         uint32_t most_px, const struct strip *s, uint8_t *row, ptrdiff_t up)
-{
-    const uint32_t right = (uint32_t)p->square.left_px + p->square.width_px;
-    if (are_whole(s, rows, most_px, right)) {
-        const uint16_t *column_px = s->column_px;
-        const uint16_t(*pair)[2] = s->pair;
-        for (const uint16_t(*const end)[2] = pair + rows; pair != end; pair++, row += up) {
-            if (most_px > 2) {
-                fx_store_u32(row + *column_px++, fx_load_u32(pair));
-            } else {
-                fx_store_u16(row + *column_px++, (*pair)[0]);
-            }
-            /* Keep two pointers: the compiler would make both from one number in each turn. */
-            __asm__("" : "+r"(column_px), "+r"(pair));
-        }
-        return;
-    }
-    for (uint32_t i = 0; i < rows; i++, row += up) {
-        uint16_t *const end = &p->column_px[first + i];
-        *end = (uint16_t)fx_min_u32(*end, right);
-        for (uint32_t k = 0, x = s->column_px[i]; x < *end; k++, x++) {
-            row[x] = (uint8_t)(s->pair[i][k / 2] >> k % 2 * 8);
-        }
-    }
-}
-
-/* Paint some rows of a strip. Callers pass constants for `most_px`, 2 or 4, so that the compiler
- * unrolls the loops over pixels. */
-static inline void paint_strip(struct lm_patch_painter *p, uint32_t first, uint32_t rows,
-                               uint32_t most_px, struct strip *s, uint8_t *row, ptrdiff_t up)
-{
-    set_shares(p, first, most_px, s);
-    set_pairs(p, first, most_px, s);
-    store(p, first, rows, most_px, s, row, up);
-}
-
-/* The same where more than four pixels of a row may lie between two lines. */
-static void paint_wide_strip(struct lm_patch_painter *p, uint32_t first, uint32_t rows,
-                             const struct strip *s, uint8_t *row, ptrdiff_t up)
-{
-    const uint32_t right = (uint32_t)p->square.left_px + p->square.width_px;
-    for (uint32_t i = first; i < first + rows; i++, row += up) {
-        for (; p->on_q20[i] < LINE_Q20 && p->column_px[i] < right; p->column_px[i]++) {
-            row[p->column_px[i]] = (uint8_t)grey_between(p->grey[i], s->grey[i - first],
-                                                         (uint16_t)(p->on_q20[i] >> 13));
-            p->on_q20[i] += p->step_q20[i];
-        }
-        p->on_q20[i] -= p->on_q20[i] < LINE_Q20 ? 0 : LINE_Q20;
-    }
-}
-
-/* Begin at the left edge of each row, with a line before line 0 that is equal to it. */
-static void begin(struct lm_patch_painter *p)
-{
-    memcpy(p->on_q20, p->start_q20, sizeof p->on_q20);
-    for (uint32_t row = 0; row < LM_PATCH_SIDE_MAX_PX; row++) {
+    const int64_t middle_q20 = ((int64_t)p->lines + 1) * (LINE_Q20 / 2);
+    for (uint32_t row = 0; row < p->square.height_px; row++) {
+        const int64_t left_q20 = (p->square.width_px - 1) * (int64_t)p->step_q20[row] / 2;
+        p->on_q20[row] = (int32_t)fx_clamp_i64(middle_q20 - left_q20, 0, INT32_MAX / 2);
         p->column_px[row] = p->square.left_px;
     }
+    lm_k_patch_hold(&p->row_cells, grey, p->square.height_px, p->held, 0);
+    p->unpainted = 0;
 }
 
-/* Fill what is left of some rows. */
-static void fill(const struct lm_patch_painter *p, uint32_t first, uint32_t rows, uint8_t *row,
-                 ptrdiff_t up)
+/* Paint a strip pixel by pixel, as far as the rows reach: for those that end in it, and for strips
+ * of more pixels than a kernel takes. */
+static void paint_pixels(const struct lm_k_patch_strip *s, uint32_t right)
 {
-    const uint32_t right = (uint32_t)p->square.left_px + p->square.width_px;
-    for (uint32_t i = first; i < first + rows; i++, row += up) {
-        memset(row + p->column_px[i], p->grey[i], right - p->column_px[i]);
+    const int32_t end_q20 = (int32_t)s->lines * LINE_Q20;
+    uint8_t *pixels = s->pixels;
+    for (uint32_t i = 0; i < s->rows; i++, pixels += s->up) {
+        int32_t on_q20 = s->on_q20[i];
+        uint32_t x = s->column_px[i];
+        for (; on_q20 < end_q20 && x < right; x++, on_q20 += s->step_q20[i]) {
+            const uint8_t *const held = s->held[i] + ((uint32_t)on_q20 >> 20);
+            pixels[x] =
+                lm_k_grey_between(held[0], held[1], (uint32_t)on_q20 >> 13 & (SHARE_Q7 - 1));
+        }
+        s->column_px[i] = (uint16_t)x;
+        s->on_q20[i] = on_q20 - end_q20;
+        s->held[i][0] = s->held[i][s->lines];
     }
 }
 
-/* Mark what a line has painted of some rows, which went on at column `from`. Rows lie along a ray,
- * so the first and the last go farthest, but for rounding. Up to three pixels more of a row are
- * painted than it goes on by. */
+/* Fill what is left of a strip's rows with the line that was painted last. */
+static void fill(const struct lm_k_patch_strip *s, uint32_t right)
+{
+    uint8_t *pixels = s->pixels;
+    for (uint32_t i = 0; i < s->rows; i++, pixels += s->up) {
+        memset(pixels + s->column_px[i], s->held[i][0], right - s->column_px[i]);
+    }
+}
+
+/* True if each row has room for a strip. */
+static bool has_room(const struct lm_k_patch_strip *s, uint32_t right)
+{
+    uint32_t farthest = 0;
+    for (uint32_t i = 0; i < s->rows; i++) {
+        farthest = fx_max_u32(farthest, s->column_px[i]);
+    }
+    return farthest + LM_K_STRIP_PX <= right;
+}
+
+/* Mark what a strip has painted of some rows, which went on at column `from`. Rows lie along a ray,
+ * so the first and the last go farthest, but for rounding. */
 static void mark_strip(const struct lm_patch_painter *p, const struct lm_plane *plane,
                        uint32_t first, uint32_t rows, uint32_t from, bool is_last)
 {
@@ -586,39 +494,51 @@ static void mark_strip(const struct lm_patch_painter *p, const struct lm_plane *
     const int32_t to = (int32_t)fx_max_u32(p->column_px[first], p->column_px[last]);
     const struct lm_rectangle part = {.left = (int32_t)from - 1,
                                       .top = bottom - (int32_t)rows,
-                                      .right = is_last ? right : to + 5,
+                                      .right = is_last ? right
+                                                       : fx_min_i32(to + LM_K_STRIP_PX + 1, right),
                                       .bottom = bottom};
     mark_part(plane, &part);
+}
+
+/* Paint the strip that ends with line `line`. */
+static void paint_strip(struct lm_patch_painter *p, const struct lm_plane *plane, uint32_t line)
+{
+    const uint32_t all = p->square.height_px;
+    const uint32_t right = (uint32_t)p->square.left_px + p->square.width_px;
+    const ptrdiff_t up = -(ptrdiff_t)plane->width_px;
+    uint8_t *pixels = plane->pixels + (p->square.top_px + all - 1) * plane->width_px;
+    const bool is_last = line == p->lines - 1;
+    for (uint32_t row = 0; row < all; row += ROWS_AT_ONCE, pixels += ROWS_AT_ONCE * up) {
+        const struct lm_k_patch_strip s = {.held = p->held + row,
+                                           .lines = line + 1 - p->unpainted,
+                                           .step_q20 = p->step_q20 + row,
+                                           .on_q20 = p->on_q20 + row,
+                                           .column_px = p->column_px + row,
+                                           .pixels = pixels,
+                                           .up = up,
+                                           .rows = fx_min_u32(all - row, ROWS_AT_ONCE)};
+        const uint32_t from = fx_min_u32(p->column_px[row], p->column_px[row + s.rows - 1]);
+        if (!p->is_wide && has_room(&s, right)) {
+            lm_k_patch_paint(&s);
+        } else {
+            paint_pixels(&s, right);
+        }
+        if (is_last) {
+            fill(&s, right);
+        }
+        mark_strip(p, plane, row, s.rows, from, is_last);
+    }
+    p->unpainted = line + 1;
 }
 
 void lm_scan_conv_patch(struct lm_patch_painter *p, const struct lm_plane *plane, uint32_t line,
                         const uint8_t *grey)
 {
-    const uint32_t all = p->square.height_px;
-    const ptrdiff_t up = -(ptrdiff_t)plane->width_px;
-    uint8_t *row = plane->pixels + (p->square.top_px + all - 1) * plane->width_px;
-    struct strip s;
     if (line == 0) {
-        begin(p);
+        begin(p, grey);
     }
-    for (uint32_t first = 0; first < all; first += ROWS_AT_ONCE, row += ROWS_AT_ONCE * up) {
-        const uint32_t rows = fx_min_u32(all - first, ROWS_AT_ONCE);
-        const uint32_t from = fx_min_u32(p->column_px[first], p->column_px[first + rows - 1]);
-        set_greys(p, first, grey, &s);
-        if (line == 0) {
-            memcpy(p->grey + first, s.grey, sizeof s.grey);
-        }
-        if (p->most_px <= 2) {
-            paint_strip(p, first, rows, 2, &s, row, up);
-        } else if (p->most_px <= 4) {
-            paint_strip(p, first, rows, 4, &s, row, up);
-        } else {
-            paint_wide_strip(p, first, rows, &s, row, up);
-        }
-        memcpy(p->grey + first, s.grey, sizeof s.grey);
-        if (line == p->lines - 1) {
-            fill(p, first, rows, row, up);
-        }
-        mark_strip(p, plane, first, rows, from, line == p->lines - 1);
+    lm_k_patch_hold(&p->row_cells, grey, p->square.height_px, p->held, line + 1 - p->unpainted);
+    if (line + 1 - p->unpainted == p->strip_lines || line == p->lines - 1) {
+        paint_strip(p, plane, line);
     }
 }

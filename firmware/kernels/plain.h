@@ -33,6 +33,8 @@ extern __typeof__(lm_k_fade) lm_k_fade_c;
 extern __typeof__(lm_k_detect) lm_k_detect_c;
 extern __typeof__(lm_k_detect_in_rain) lm_k_detect_in_rain_c;
 extern __typeof__(lm_k_tone) lm_k_tone_c;
+extern __typeof__(lm_k_patch_hold) lm_k_patch_hold_c;
+extern __typeof__(lm_k_patch_paint) lm_k_patch_paint_c;
 extern __typeof__(lm_k_colour_area) lm_k_colour_area_c;
 
 #endif

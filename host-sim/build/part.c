@@ -4,6 +4,7 @@
 #include "hs/error.h"
 #include "hs/input_file.h"
 #include "image/codes.h"
+#include "image/pack.h"
 
 #include <errno.h>
 #include <fcntl.h>
@@ -123,7 +124,7 @@ int build_part_begin(struct build_part_writer *w, const char *path, const struct
     return is_begun ? 0 : -1;
 }
 
-static int add_item(struct build_part_writer *w, uint32_t entry, bool is_top)
+static int add_item(struct build_part_writer *w, uint32_t entry, bool is_top, uint16_t size)
 {
     if (w->item_count == w->item_capacity) {
         const size_t capacity = w->item_capacity ? 2 * w->item_capacity : 1024;
@@ -134,15 +135,18 @@ static int add_item(struct build_part_writer *w, uint32_t entry, bool is_top)
         w->items = items;
         w->item_capacity = capacity;
     }
-    w->items[w->item_count++] = (struct build_part_item){entry, is_top, w->offset};
+    w->items[w->item_count++] = (struct build_part_item){entry, is_top, size, w->offset};
     return 0;
 }
 
 int build_part_put(void *writer, uint32_t entry, const struct build_tile *tile, bool is_top)
 {
     struct build_part_writer *w = writer;
+    uint8_t record[LM_TILE_BYTES];
+    const uint16_t size = image_pack(&tile->record, IMAGE_COMPRESSION_QUICK, record);
     w->head.tile_count++;
-    if (add_item(w, entry, false) != 0 || put(w, &tile->record, LM_TILE_BYTES) != 0) {
+    if (add_item(w, entry, false, size) != 0 ||
+        put(w, record, (size_t)size * LM_DB_PLACE_BYTES) != 0) {
         return -1;
     }
     if (!is_top) {
@@ -150,7 +154,7 @@ int build_part_put(void *writer, uint32_t entry, const struct build_tile *tile, 
     }
     struct top top;
     pack_top(&top, tile);
-    return add_item(w, entry, true) == 0 ? put(w, &top, sizeof top) : -1;
+    return add_item(w, entry, true, 0) == 0 ? put(w, &top, sizeof top) : -1;
 }
 
 static int compare_items(const void *a, const void *b)
@@ -257,14 +261,22 @@ static int check_body(const struct build_part *p)
                : hs_error(p->path, make_again, "is damaged: its checksum is wrong");
 }
 
+/* A record that is packed is no longer than a raw one. */
+static bool is_sound_size(const struct build_part_item *item)
+{
+    return item->is_top ? item->size == 0
+                        : item->size > 0 && item->size <= LM_TILE_BYTES / LM_DB_PLACE_BYTES;
+}
+
 static int check_index(const struct build_part *p)
 {
     uint32_t tiles = 0;
-    struct build_part_item before = {0, 0, 0};
+    struct build_part_item before = {0, 0, 0, 0};
     for (uint32_t i = 0; i < p->head.index_count; i++) {
         const struct build_part_item item = item_at(p, i);
-        const uint64_t bytes = item.is_top ? sizeof(struct top) : LM_TILE_BYTES;
-        if (item.is_top > 1 || item.offset < BUILD_PART_HEADER_BYTES ||
+        const uint64_t bytes =
+            item.is_top ? sizeof(struct top) : (uint64_t)item.size * LM_DB_PLACE_BYTES;
+        if (item.is_top > 1 || !is_sound_size(&item) || item.offset < BUILD_PART_HEADER_BYTES ||
             item.offset > p->head.index_offset || bytes > p->head.index_offset - item.offset ||
             (i > 0 && compare_items(&before, &item) >= 0)) {
             return hs_error(p->path, make_again, "is damaged: item %u of its index is wrong",
@@ -331,16 +343,17 @@ void build_part_close(struct build_part *p)
     *p = (struct build_part){.path = NULL};
 }
 
-/* The bytes of an item, or NULL where there is none. */
-static const uint8_t *find(const struct build_part *p, uint32_t entry, bool is_top)
+/* The bytes of an item, or NULL where there is none; its size in units into *size. */
+static const uint8_t *find(const struct build_part *p, uint32_t entry, bool is_top, uint16_t *size)
 {
-    const struct build_part_item wanted = {entry, is_top, 0};
+    const struct build_part_item wanted = {entry, is_top, 0, 0};
     uint32_t low = 0, high = p->head.index_count;
     while (low < high) {
         const uint32_t middle = low + (high - low) / 2;
         const struct build_part_item item = item_at(p, middle);
         const int order = compare_items(&item, &wanted);
         if (order == 0) {
+            *size = item.size;
             return p->bytes + item.offset;
         }
         low = order < 0 ? middle + 1 : low;
@@ -365,13 +378,14 @@ void build_part_release(const struct build_part *p)
 int build_part_take(const struct build_part *p, uint32_t entry, const struct image_frame *frame,
                     int level, struct lm_tile *record, struct build_tile *tile)
 {
-    const uint8_t *bytes = find(p, entry, false);
+    uint16_t size;
+    const uint8_t *bytes = find(p, entry, false, &size);
     if (!bytes) {
         return 0;
     }
-    memcpy(record, bytes, sizeof *record);
-    const uint8_t *above = tile ? find(p, entry, true) : NULL;
-    bool is_good = is_record(record, frame, level) && (!tile || above);
+    bool is_good = image_unpack(bytes, size, record) && is_record(record, frame, level);
+    const uint8_t *above = tile ? find(p, entry, true, &size) : NULL;
+    is_good = is_good && (!tile || above);
     if (is_good && tile) {
         struct top *top = malloc(sizeof *top);
         if (!top) {

@@ -1,6 +1,7 @@
 #include "build/work_sources.h"
 
 #include "build/manifest.h"
+#include "build/part.h"
 #include "hs/error.h"
 #include "lm/version.h"
 
@@ -295,7 +296,7 @@ static struct image_sha256 common_digest(const struct build_work *w, const struc
 {
     struct image_sha256 sha;
     image_sha256_begin(&sha);
-    feed(&sha, "tiles of landmass %s, parts of version 1\n", LM_VERSION);
+    feed(&sha, "tiles of landmass %s, parts of version %d\n", LM_VERSION, BUILD_PART_VERSION);
     image_sha256_add(&sha, choices, strlen(choices));
     feed(&sha, "grid %s facings %d parts %d\n", w->grid_sha256, b->facing.facings, b->parts);
     image_sha256_add(&sha, b->classes.height_dm, sizeof b->classes.height_dm);

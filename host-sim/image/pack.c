@@ -45,14 +45,17 @@ static void make_strips(const struct lm_tile *tile,
 }
 
 /* Returns the units of the compressed record, 0 if it would not be shorter than the raw one. */
-static uint16_t compress_tile(const struct lm_tile *tile, uint8_t record[LM_TILE_BYTES])
+static uint16_t compress_tile(const struct lm_tile *tile, enum image_compression how,
+                              uint8_t record[LM_TILE_BYTES])
 {
     enum { ROOM = LM_TILE_BYTES - LM_DB_PLACE_BYTES - HEAD_BYTES };
     uint8_t strips[LM_TILE_POINTS][4][LM_TILE_POINTS];
     char block[ROOM];
     make_strips(tile, strips);
-    const int bytes =
-        LZ4_compress_HC((const char *)strips, block, sizeof strips, sizeof block, LEVEL);
+    const char *const from = (const char *)strips;
+    const int bytes = how == IMAGE_COMPRESSION_QUICK
+                          ? LZ4_compress_default(from, block, sizeof strips, sizeof block)
+                          : LZ4_compress_HC(from, block, sizeof strips, sizeof block, LEVEL);
     if (bytes <= 0) {
         return 0;
     }
@@ -68,9 +71,9 @@ static uint16_t compress_tile(const struct lm_tile *tile, uint8_t record[LM_TILE
 uint16_t image_pack(const struct lm_tile *tile, enum image_compression how,
                     uint8_t record[LM_TILE_BYTES])
 {
-    if (how == IMAGE_COMPRESSION_LZ4) {
+    if (how != IMAGE_COMPRESSION_NONE) {
         struct lm_tile unpacked;
-        const uint16_t size = compress_tile(tile, record);
+        const uint16_t size = compress_tile(tile, how, record);
         if (size > 0 && image_unpack(record, size, &unpacked) &&
             memcmp(&unpacked, tile, sizeof unpacked) == 0) {
             return size;

@@ -715,6 +715,75 @@ static void draw_strips(struct input *in)
     }
 }
 
+static void draw_patch(struct input *in)
+{
+    draw_strips(in);
+    in->first = hs_rng_below(&in->rng, 1 << 16);
+    in->number[0] = (int32_t)hs_rng_below(&in->rng, 4);
+}
+
+/* The cells of a patch's rows: close together, or anywhere in a line. */
+static struct lm_k_patch_cells patch_cells(const struct input *in, uint32_t rows)
+{
+    struct lm_k_patch_cells c = {.are_close = in->number[0] > 0};
+    for (uint32_t row = 0; row < rows + LM_K_PATCH_GROUP; row++) {
+        const uint32_t any = (uint32_t)in->cell[row % ROOM], most = c.are_close ? 32 : 256;
+        if (row % LM_K_PATCH_GROUP == 0) {
+            c.first[row / LM_K_PATCH_GROUP] = (uint16_t)(any >> 8 & 255);
+        }
+        c.above[row] = (uint8_t)(any % most);
+        c.part_q7[row] = (uint8_t)(c.above[row] == 31 ? 0 : any >> 16 & 127);
+    }
+    return c;
+}
+
+/* Rows whose pixels end beside one another: 16 greys of each row in 4 entries of a line. */
+static void run_patch_hold(const struct input *in, struct output *out, bool is_plain)
+{
+    const uint32_t rows = 1 + in->cells % 128;
+    const struct lm_k_patch_cells c = patch_cells(in, rows);
+    TWIN(lm_k_patch_hold)
+    (&c, (const uint8_t *)in->entry, rows, (uint8_t(*)[LM_K_HELD])out->line[0],
+     in->first % LM_K_HELD);
+    out->end[0] = 4 * rows;
+    out->room = (rows + LM_K_PATCH_GROUP - 1) / LM_K_PATCH_GROUP * LM_K_PATCH_GROUP * 4;
+}
+
+/* Strips of any number of lines. Some rows begin behind the strip, and steps are of any size that
+ * leaves a row no more pixels than a strip may have. */
+static void run_patch_paint(const struct input *in, struct output *out, bool is_plain)
+{
+    enum { ROWS = 32, STRIDE = 64 };
+    const uint32_t lines = 1 + in->first % LM_K_STRIP_LINES;
+    int32_t step_q20[ROWS], on_q20[ROWS];
+    uint16_t column_px[ROWS];
+    uint8_t held[ROWS][LM_K_HELD];
+    memcpy(held, in->entry, sizeof held);
+    for (uint32_t i = 0; i < ROWS; i++) {
+        step_q20[i] =
+            (int32_t)((lines << 20) / LM_K_STRIP_PX + (in->cell[i] >> in->cells % 28 >> 6));
+        on_q20[i] = (int32_t)(in->cell[ROWS + i] % ((lines + 2) << 20));
+        column_px[i] = (uint16_t)(in->cell[2 * ROWS + i] % (STRIDE - LM_K_STRIP_PX));
+    }
+    const struct lm_k_patch_strip strip = {.held = held,
+                                           .lines = lines,
+                                           .step_q20 = step_q20,
+                                           .on_q20 = on_q20,
+                                           .column_px = column_px,
+                                           .pixels = (uint8_t *)out->line[0] + (ROWS - 1) * STRIDE,
+                                           .up = -STRIDE,
+                                           .rows = ROWS};
+    TWIN(lm_k_patch_paint)(&strip);
+    for (uint32_t i = 0; i < ROWS; i++) {
+        out->line[1][i] = (uint32_t)on_q20[i];
+        out->line[1][ROWS + i] = column_px[i];
+        out->line[1][2 * ROWS + i] = held[i][0];
+    }
+    out->end[0] = ROWS * STRIDE / 4;
+    out->end[1] = 3 * ROWS;
+    out->room = ROOM;
+}
+
 static void run_tile_row(const struct input *in, struct output *out, bool is_plain)
 {
     struct lm_k_strips strips;
@@ -750,6 +819,8 @@ static const struct kernel kernels[] = {
     {"lm_k_detect", draw_powers, run_detect},
     {"lm_k_detect_in_rain", draw_powers, run_detect_in_rain},
     {"lm_k_tone", draw_tone, run_tone},
+    {"lm_k_patch_hold", draw_patch, run_patch_hold},
+    {"lm_k_patch_paint", draw_patch, run_patch_paint},
     {"lm_k_colour_area", draw_colours, run_colour_area},
 };
 

@@ -22,6 +22,7 @@
 
 #include "fx/types.h"
 #include "lm/damage.h"
+#include "lm/kernels_display.h"
 
 /* Plane: the picture before colours and symbols. */
 struct lm_plane {
@@ -79,7 +80,7 @@ void lm_plane_keep_wedge(const struct lm_plane *plane, const struct lm_ppi *ppi,
 struct lm_frame lm_patch_square(const struct lm_frame *frame);
 
 /* Pixels of a patch's square, a side, at most. */
-enum { LM_PATCH_SIDE_MAX_PX = 1024 };
+enum { LM_PATCH_SIDE_MAX_PX = LM_K_PATCH_ROWS };
 
 /* Geometry of a patch: its lines are rays from the antenna. */
 struct lm_patch_fan {
@@ -90,29 +91,31 @@ struct lm_patch_fan {
 };
 
 /* Painter of a patch. Every pixel of the square takes the grey between the four cells around it,
- * linear both ways. A line completes the pixels between it and the line before.
+ * linear both ways. Lines are held until there are as many as have 16 pixels between them and the
+ * last one that was painted: a strip. The strip is painted then, or when the last line comes.
  *
- *      line k - 1    k
- *         \    . .  /       . pixels that line k completes
- *          \   . . /
- *           \  .  /        lines are closer together at the bottom, where the patch is nearer
- *            \ . /
+ *      line k - 1    k    k + 1
+ *         \    . .  /  . .  /       . pixels of a strip of two lines
+ *          \   . . / . .   /
+ *           \  .  / . .   /        lines are closer together at the bottom, where the patch is
+ *            \ . / .     /         nearer
  *
- * Up to three pixels to the right of a line are painted before they are due; the next line paints
+ * Up to 15 pixels to the right of a strip are painted before they are due; the next strip paints
  * them again. The caller owns the painter; all fields are read-only to others. Rows count upwards
  * from the bottom of the square. */
 struct lm_patch_painter {
     struct lm_frame square;
     uint32_t lines, cells;
-    uint32_t most_px;                    /* pixels from one line to the next, at most, in any row */
-    uint16_t cell[LM_PATCH_SIDE_MAX_PX]; /* the lower of the two cells that a row lies between */
-    uint16_t part_q7[LM_PATCH_SIDE_MAX_PX]; /* the share of the upper one */
+    uint32_t strip_lines; /* lines that a strip has: 1..LM_K_STRIP_LINES */
+    bool is_wide;         /* there may be more than 16 pixels between two lines */
+    uint32_t unpainted;   /* the first line that is not painted yet */
+    struct lm_k_patch_cells row_cells;
     int32_t step_q20[LM_PATCH_SIDE_MAX_PX]; /* lines a pixel in a row */
     /* The next pixel of each row: its column, and how many lines beyond the line painted last. */
     uint16_t column_px[LM_PATCH_SIDE_MAX_PX];
     int32_t on_q20[LM_PATCH_SIDE_MAX_PX];
-    int32_t start_q20[LM_PATCH_SIDE_MAX_PX]; /* the line, from line -1, on which a row begins */
-    uint16_t grey[LM_PATCH_SIDE_MAX_PX];     /* of the line painted last */
+    /* Of each row the grey of the line painted last, and of those after it. */
+    uint8_t held[LM_PATCH_SIDE_MAX_PX][LM_K_HELD];
 };
 
 /* Prepare a patch that fills the square of `frame` (lm_patch_square), of at most
@@ -120,9 +123,10 @@ struct lm_patch_painter {
 void lm_patch_painter_set(struct lm_patch_painter *p, const struct lm_frame *frame,
                           const struct lm_patch_fan *fan);
 
-/* Paint line `line`. Lines come in order; line 0 restarts the painter. grey[0] is the nearest cell,
- * at the bottom; there are p->cells of them, and one more byte is read. Pixels beyond the first and
- * the last line and cell take these. Cost: docs/benchmarks.md. */
+/* Take line `line`, and paint it if it ends a strip. Lines come in order; line 0 restarts the
+ * painter. grey[0] is the nearest cell, at the bottom; there are p->cells of them, and one more
+ * byte is read. Pixels beyond the first and the last line and cell take these. Cost:
+ * docs/benchmarks.md. */
 void lm_scan_conv_patch(struct lm_patch_painter *p, const struct lm_plane *plane, uint32_t line,
                         const uint8_t *grey);
 

@@ -20,7 +20,7 @@
 
 #include <stddef.h>
 
-enum { BUILD_PART_VERSION = 1, BUILD_PART_HEADER_BYTES = 2048 };
+enum { BUILD_PART_VERSION = 2, BUILD_PART_HEADER_BYTES = 2048 };
 
 /* What a part says of itself. */
 struct build_part_head {
@@ -40,7 +40,8 @@ struct build_part_head {
 
 struct build_part_item {
     uint32_t entry;
-    uint32_t is_top; /* 1: what the tile above needs, 0: the record */
+    uint16_t is_top; /* 1: what the tile above needs, 0: the record */
+    uint16_t size;   /* of the record, in units of LM_DB_PLACE_BYTES; else 0 */
     uint64_t offset;
 };
 

@@ -400,33 +400,45 @@ TEST(a_patch_takes_half_of_any_glass)
     }
 }
 
-/* While the patch is drawn, what is painted stays right to the last line, and nothing is beyond. */
-TEST(a_patch_grows_line_by_line)
+/* While the patch is drawn, it is right up to the last line of the last strip, and soon behind that
+ * line nothing is painted. */
+static void grow_patch(uint16_t side_px, const struct lm_patch_fan *fan)
 {
-    const struct lm_patch_fan fan = fan_of(256, 15000, 20);
     static struct lm_patch_painter painter;
     struct glass g;
     uint8_t grey[CELLS];
     memset(grey, 200, sizeof grey);
-    make_glass(&g, 512, 512);
+    make_glass(&g, side_px, side_px);
     const struct lm_frame s = lm_patch_square(&g.frame);
-    lm_patch_painter_set(&painter, &g.frame, &fan);
-    for (uint32_t line = 0; line < fan.lines; line++) {
+    lm_patch_painter_set(&painter, &g.frame, fan);
+    for (uint32_t line = 0; line < fan->lines; line++) {
         lm_scan_conv_patch(&painter, &g.plane, line, grey);
+        assert_true(line + 1 - painter.unpainted < painter.strip_lines);
         for (int32_t y = s.top_px; y < s.top_px + s.height_px && line % 9 == 0; y++) {
             const double up = 0.5 - (y + 0.5 - s.top_px) / s.height_px;
-            const double end = s.left_px + (right_of(&fan, line, up) + 0.5) * s.width_px;
-            for (int32_t x = s.left_px; x < s.left_px + s.width_px; x++) {
+            const double painted = (double)painter.unpainted - 1;
+            const double end =
+                s.left_px + (right_of(fan, (uint32_t)painted, up) + 0.5) * s.width_px;
+            for (int32_t x = s.left_px; painted >= 0 && x < s.left_px + s.width_px; x++) {
                 const uint8_t shown = g.plane.pixels[y * g.plane.width_px + x];
                 if (x + 0.5 < end - 0.1) {
                     assert_int_equal(shown, 200);
-                } else if (x + 0.5 > end + 4 && x >= s.left_px + 4) {
-                    assert_int_equal(shown, 0); /* up to four are painted before they are due */
+                } else if (x + 0.5 > end + LM_K_STRIP_PX) {
+                    assert_int_equal(shown, 0);
                 }
             }
         }
     }
     close_glass(&g);
+}
+
+TEST(a_patch_grows_strip_by_strip)
+{
+    const struct lm_patch_fan usual = fan_of(256, 15000, 20), few = fan_of(20, 15000, 20);
+    grow_patch(256, &usual);
+    grow_patch(512, &usual);
+    grow_patch(1024, &usual);
+    grow_patch(768, &few); /* more than 16 pixels from line to line */
 }
 
 /* What a pixel of a frame that was moved shows: that of where it came from, or black. */
