@@ -455,8 +455,8 @@ static void paint_pixels(const struct lm_k_patch_strip *s, uint32_t right)
         uint32_t x = s->column_px[i];
         for (; on_q20 < end_q20 && x < right; x++, on_q20 += s->step_q20[i]) {
             const uint8_t *const held = s->held[i] + ((uint32_t)on_q20 >> 20);
-            pixels[x] =
-                lm_k_grey_between(held[0], held[1], (uint32_t)on_q20 >> 13 & (SHARE_Q7 - 1));
+            const uint16_t share_q7 = (uint16_t)((uint32_t)on_q20 >> 13 & (SHARE_Q7 - 1));
+            pixels[x] = lm_k_grey_between(held[0], held[1], share_q7);
         }
         s->column_px[i] = (uint16_t)x;
         s->on_q20[i] = on_q20 - end_q20;

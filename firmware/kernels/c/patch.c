@@ -10,10 +10,7 @@ static inline void between(const uint16_t pair[16], const uint16_t share_q7[16],
 {
 #pragma GCC unroll 1
     for (uint32_t k = 0; k < 16; k++) {
-        const uint16_t first = pair[k] & 255, second = pair[k] >> 8;
-        const int16_t more =
-            (int16_t)((int16_t)(second - first) * (int16_t)share_q7[k] + LINE_Q7 / 2);
-        grey[k] = (uint8_t)(first + (more >> 7));
+        grey[k] = lm_k_grey_between((uint8_t)pair[k], (uint8_t)(pair[k] >> 8), share_q7[k]);
     }
 }
 

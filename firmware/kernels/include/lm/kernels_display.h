@@ -26,15 +26,15 @@ struct lm_k_patch_cells {
 
 /* Grey between two, a share of 0..2^7 from the first to the second. A difference is below 2^8,
  * times 2^7: 16 bits hold it. */
-static inline uint8_t lm_k_grey_between(uint8_t first, uint8_t second, uint32_t share_q7)
+static inline uint8_t lm_k_grey_between(uint8_t first, uint8_t second, uint16_t share_q7)
 {
-    const int32_t more = (second - first) * (int32_t)share_q7 + (1 << 6);
+    const int16_t more = (int16_t)((second - first) * (int16_t)share_q7 + (1 << 6));
     return (uint8_t)(first + (more >> 7));
 }
 
 /* Hold the greys of a line at the middles of `rows` rows: held[row][at]. Whole groups of rows are
  * written. grey[0] is the nearest cell; where a row's lower cell is the line's last, one more byte
- * may be read, and its share is 0. Cost: 2.3 a row. */
+ * may be read, and its share is 0. Cost: 2.4 a row. */
 void lm_k_patch_hold(const struct lm_k_patch_cells *cells, const uint8_t *grey, uint32_t rows,
                      uint8_t (*held)[LM_K_HELD], uint32_t at);
 
@@ -55,7 +55,7 @@ struct lm_k_patch_strip {
 /* Paint the pixels of a strip, of which no row has more than LM_K_STRIP_PX. A row that has any gets
  * LM_K_STRIP_PX written: behind those of the strip comes the grey of its last line. That line is
  * then the one painted last: `held`, `on_q20` and `column_px` go on to it, and to the first pixel
- * behind it. Cost: 51 a row. */
+ * behind it. Cost: 52 a row. */
 void lm_k_patch_paint(const struct lm_k_patch_strip *strip);
 
 enum { LM_K_GREYS = 256, LM_K_COLOUR_BYTES = 4 };
