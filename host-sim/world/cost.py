@@ -19,6 +19,7 @@ UNIT_M = 40030174.0 / 2**32  # a binary angle of the Earth's mean circle
 TILE_CELLS = 64
 SHARDS_A_PLAN, TILES_A_SHARD = 4096, 32768  # BUILD_SHARDS_MAX, and what `plan` allows a shard
 CORES_A_NODE = 32
+RECORD_BYTES = 17.6e3  # of a tile in the image, until all are joined and it is compressed
 
 
 def read(folder):
@@ -74,7 +75,7 @@ def row(cell, cores, measured, options):
     seconds = [times[i % len(times)] for i in range(count)]
     core_s = sum(seconds) * (1 + options.fails / 2)
     made = sum(s["bytes"] for s in shards) / sum(s["tiles"] for s in shards) * tiles
-    image = join["bytes"] / join["tiles"] * tiles
+    raw, image = RECORD_BYTES * tiles, join["bytes"] / join["tiles"] * tiles
     read_in = options.source * tiles
     schedule = makespan(seconds, cores, options.fails)
     traffic = read_in + made
@@ -84,10 +85,10 @@ def row(cell, cores, measured, options):
     shard_s = max(schedule, disk, wire)
     join_cpu = join["processor_s"] / join["tiles"] * tiles
     waves = math.ceil(images / cores)
-    join_s = max(join_cpu / images * waves, (made + image) / (options.disk * 1e6))
+    join_s = max(join_cpu / images * waves, (made + 2 * raw + image) / (options.disk * 1e6))
     bound = "cores" if shard_s == schedule else "disk" if shard_s == disk else "network"
     return (UNIT_M * 2**exponent, tiles, count, images, core_s / 3600, join_cpu / 3600, cores,
-            min(cores, count) * max(s["memory_mib"] for s in shards) / 1024, (made + image) / 1e12, traffic / 1e12,
+            min(cores, count) * max(s["memory_mib"] for s in shards) / 1024, (made + raw) / 1e12, traffic / 1e12,
             clock(shard_s), bound, clock(join_s), "cores" if join_cpu / images * waves >= join_s else "disk", shard_s + join_s)
 
 
