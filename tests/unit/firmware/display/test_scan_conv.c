@@ -411,6 +411,8 @@ static void grow_patch(uint16_t side_px, const struct lm_patch_fan *fan)
     make_glass(&g, side_px, side_px);
     const struct lm_frame s = lm_patch_square(&g.frame);
     lm_patch_painter_set(&painter, &g.frame, fan);
+    /* What vectors ask for: only lines of less than 32 cells go without. */
+    assert_int_equal(painter.row_cells.are_close, fan->cells >= LM_K_PATCH_CLOSE);
     for (uint32_t line = 0; line < fan->lines; line++) {
         lm_scan_conv_patch(&painter, &g.plane, line, grey);
         assert_true(line + 1 - painter.unpainted < painter.strip_lines);
