@@ -413,6 +413,7 @@ void lm_patch_painter_set(struct lm_patch_painter *p, const struct lm_frame *fra
     p->square = lm_patch_square(frame);
     p->lines = fan->lines;
     p->cells = fan->cells;
+    p->waiting = 0;
     p->row_cells.are_close = fan->cells >= LM_K_PATCH_CLOSE;
     const uint32_t rows = p->square.height_px;
     uint32_t least_q20 = UINT32_MAX;
@@ -441,7 +442,7 @@ static void begin(struct lm_patch_painter *p, const uint8_t *grey)
         p->column_px[row] = p->square.left_px;
     }
     lm_k_patch_hold(&p->row_cells, grey, p->square.height_px, p->held, 0);
-    p->unpainted = 0;
+    p->waiting = 0;
 }
 
 /* Paint a strip pixel by pixel, as far as the rows reach: for those that end in it, and for strips
@@ -500,17 +501,16 @@ static void mark_strip(const struct lm_patch_painter *p, const struct lm_plane *
     mark_part(plane, &part);
 }
 
-/* Paint the strip that ends with line `line`. */
-static void paint_strip(struct lm_patch_painter *p, const struct lm_plane *plane, uint32_t line)
+/* Paint the strip of the lines that wait. */
+static void paint_strip(struct lm_patch_painter *p, const struct lm_plane *plane, bool is_last)
 {
     const uint32_t all = p->square.height_px;
     const uint32_t right = (uint32_t)p->square.left_px + p->square.width_px;
     const ptrdiff_t up = -(ptrdiff_t)plane->width_px;
     uint8_t *pixels = plane->pixels + (p->square.top_px + all - 1) * plane->width_px;
-    const bool is_last = line == p->lines - 1;
     for (uint32_t row = 0; row < all; row += ROWS_AT_ONCE, pixels += ROWS_AT_ONCE * up) {
         const struct lm_k_patch_strip s = {.held = p->held + row,
-                                           .lines = line + 1 - p->unpainted,
+                                           .lines = p->waiting,
                                            .step_q20 = p->step_q20 + row,
                                            .on_q20 = p->on_q20 + row,
                                            .column_px = p->column_px + row,
@@ -528,7 +528,7 @@ static void paint_strip(struct lm_patch_painter *p, const struct lm_plane *plane
         }
         mark_strip(p, plane, row, s.rows, from, is_last);
     }
-    p->unpainted = line + 1;
+    p->waiting = 0;
 }
 
 void lm_scan_conv_patch(struct lm_patch_painter *p, const struct lm_plane *plane, uint32_t line,
@@ -537,8 +537,10 @@ void lm_scan_conv_patch(struct lm_patch_painter *p, const struct lm_plane *plane
     if (line == 0) {
         begin(p, grey);
     }
-    lm_k_patch_hold(&p->row_cells, grey, p->square.height_px, p->held, line + 1 - p->unpainted);
-    if (line + 1 - p->unpainted == p->strip_lines || line == p->lines - 1) {
-        paint_strip(p, plane, line);
+    const bool is_last = line == p->lines - 1;
+    p->waiting++;
+    lm_k_patch_hold(&p->row_cells, grey, p->square.height_px, p->held, p->waiting);
+    if (p->waiting == p->strip_lines || is_last) {
+        paint_strip(p, plane, is_last);
     }
 }

@@ -108,7 +108,7 @@ struct lm_patch_painter {
     uint32_t lines, cells;
     uint32_t strip_lines; /* lines that a strip has: 1..LM_K_STRIP_LINES */
     bool is_wide;         /* there may be more than 16 pixels between two lines */
-    uint32_t unpainted;   /* the first line that is not painted yet */
+    uint32_t waiting;     /* lines that are held and not painted yet: less than strip_lines */
     struct lm_k_patch_cells row_cells;
     int32_t step_q20[LM_PATCH_SIDE_MAX_PX]; /* lines a pixel in a row */
     /* The next pixel of each row: its column, and how many lines beyond the line painted last. */

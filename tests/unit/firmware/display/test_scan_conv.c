@@ -415,10 +415,10 @@ static void grow_patch(uint16_t side_px, const struct lm_patch_fan *fan)
     assert_int_equal(painter.row_cells.are_close, fan->cells >= LM_K_PATCH_CLOSE);
     for (uint32_t line = 0; line < fan->lines; line++) {
         lm_scan_conv_patch(&painter, &g.plane, line, grey);
-        assert_true(line + 1 - painter.unpainted < painter.strip_lines);
+        assert_true(painter.waiting < painter.strip_lines);
         for (int32_t y = s.top_px; y < s.top_px + s.height_px && line % 9 == 0; y++) {
             const double up = 0.5 - (y + 0.5 - s.top_px) / s.height_px;
-            const double painted = (double)painter.unpainted - 1;
+            const double painted = (double)line - painter.waiting;
             const double end =
                 s.left_px + (right_of(fan, (uint32_t)painted, up) + 0.5) * s.width_px;
             for (int32_t x = s.left_px; painted >= 0 && x < s.left_px + s.width_px; x++) {
