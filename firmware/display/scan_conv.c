@@ -421,8 +421,7 @@ void lm_patch_painter_set(struct lm_patch_painter *p, const struct lm_frame *fra
         p->step_q20[row] = step_q20_of(p, fan, row);
         least_q20 = fx_min_u32(least_q20, (uint32_t)p->step_q20[row]);
     }
-    for (uint32_t row = 0;
-         row < (rows + LM_K_PATCH_GROUP - 1) / LM_K_PATCH_GROUP * LM_K_PATCH_GROUP; row++) {
+    for (uint32_t row = 0; row < rows || row % LM_K_PATCH_GROUP != 0; row++) { /* whole groups */
         set_cells(p, row);
     }
     /* Over n lines lie n / step pixels, and one more at most where that is no whole number. */
