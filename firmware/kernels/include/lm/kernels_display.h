@@ -56,7 +56,7 @@ struct lm_k_patch_strip {
  * LM_K_STRIP_PX written: behind those of the strip comes the grey of its last line. That line is
  * then the one painted last: `held`, `on_q20` and `column_px` go on to it, and to the first pixel
  * behind it. Cost: 52 a row. */
-void lm_k_patch_paint(const struct lm_k_patch_strip *strip);
+void lm_k_patch_paint(const struct lm_k_patch_strip *lent);
 
 enum { LM_K_GREYS = 256, LM_K_COLOUR_BYTES = 4 };
 
