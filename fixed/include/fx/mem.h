@@ -30,19 +30,6 @@ static inline uint16_t fx_load_u16(const void *from)
     return half;
 }
 
-/* Store the lower 16 bits of a number at any address, in this machine's byte order. */
-static inline void fx_store_u16(void *to, uint32_t number)
-{
-    const uint16_t half = (uint16_t)number;
-    __builtin_memcpy(to, &half, sizeof half);
-}
-
-/* Store four bytes at any address, in this machine's byte order. */
-static inline void fx_store_u32(void *to, uint32_t word)
-{
-    __builtin_memcpy(to, &word, sizeof word);
-}
-
 /* Load eight bytes from any address, in this machine's byte order. */
 static inline uint64_t fx_load_u64(const void *from)
 {

@@ -10,7 +10,7 @@
 #include <string.h>
 
 static const double degree = 3.14159265358979323846 / 180;
-enum { CELLS = 256, GUARD = 0xEE };
+enum { CELLS = 256, PATCH_CELLS = 400, GUARD = 0xEE };
 
 /* A plane with guard bytes on all sides of its memory. */
 struct glass {
@@ -344,7 +344,7 @@ static void paint_patch(const struct glass *g, const struct lm_patch_fan *fan,
     static struct lm_patch_painter painter;
     lm_patch_painter_set(&painter, &g->frame, fan);
     for (uint32_t line = 0; line < fan->lines; line++) {
-        uint8_t grey[CELLS];
+        uint8_t grey[PATCH_CELLS + 1] = {0}; /* one more is read */
         for (uint32_t i = 0; i < fan->cells; i++) {
             const double up = up_of(fan, i);
             const double value = ramp_grey(ramp, right_of(fan, line, up), up);
@@ -359,14 +359,15 @@ TEST(a_patch_fills_its_square_and_shows_every_place_where_it_is)
 {
     static const uint16_t px[][2] = {{256, 256}, {480, 480},  {512, 512},  {768, 768},
                                      {700, 900}, {1024, 768}, {1024, 1024}};
-    static const double fans[][3] = {
-        {256, 60000, 5}, {256, 15000, 20}, {256, 9600, 40}, {64, 20000, 1}, {100, 5000, 30}};
+    static const double fans[][3] = {{256, 60000, 5}, {256, 15000, 20}, {256, 9600, 40},
+                                     {64, 20000, 1},  {100, 5000, 30},  {PATCH_CELLS, 60000, 3}};
+    enum { GLASSES = sizeof px / sizeof *px, FANS = sizeof fans / sizeof *fans };
     const struct ramp ramp = {127, 160, 60};
-    for (int n = 0; n < 7 * 5; n++) {
-        const double *f = fans[n % 5];
+    for (int n = 0; n < GLASSES * FANS; n++) {
+        const double *f = fans[n % FANS];
         const struct lm_patch_fan fan = fan_of((uint32_t)f[0], f[1], f[2]);
         struct glass g;
-        make_glass(&g, px[n / 5][0], px[n / 5][1]);
+        make_glass(&g, px[n / FANS][0], px[n / FANS][1]);
         const struct lm_frame s = lm_patch_square(&g.frame);
         paint_patch(&g, &fan, &ramp);
         double worst = 0;
@@ -406,7 +407,7 @@ static void grow_patch(uint16_t side_px, const struct lm_patch_fan *fan)
 {
     static struct lm_patch_painter painter;
     struct glass g;
-    uint8_t grey[CELLS];
+    uint8_t grey[PATCH_CELLS + 1];
     memset(grey, 200, sizeof grey);
     make_glass(&g, side_px, side_px);
     const struct lm_frame s = lm_patch_square(&g.frame);
