@@ -113,7 +113,7 @@ else
 fi
 
 if [ -x "$build/bin/landmass-dis" ]; then
-    python3 -B "$here/dis.py" "$build/bin/landmass-dis"
+    python3 -B "$here/dis_delay.py" "$build/bin/landmass-dis"
     "$build/bin/tests/bench/dis_glass" 300
     echo
 fi

@@ -1,6 +1,6 @@
 /* How long a new entity of DIS is on its way to the glass of a display that sweeps the ground map,
  * by the times of the parts: gateway, bus, steps of the unit, antenna, frames. Time is made up, so
- * that the figures are the same on every machine; what processors add is not in them (dis.py
+ * that the figures are the same on every machine; what processors add is not in them (dis_delay.py
  * measures it for the gateway).
  *
  * The aircraft stands 5.5 km before a round lake. Each entity appears on it at a moment of its own,

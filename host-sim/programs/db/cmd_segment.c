@@ -440,14 +440,14 @@ static int resolve_block(struct work *w, const struct block *b)
 
 /* ---- the sieve ---- */
 
-/* The rows of the block as they are, and those around them. The band that was sieved, `seen`, has
- * more than those on either side. */
+/* The rows of the block as they are, and those around them, as far as the band that was sieved,
+ * `seen`, has them. Without a sieve it has none, and there are no specks. */
 static struct db_specks_block around(const struct work *w, const struct block *b,
                                      struct db_rows seen)
 {
-    const int top = b->y > DB_SPECKS_HALO ? b->y - DB_SPECKS_HALO : 0;
+    const int top = b->y - DB_SPECKS_HALO > seen.first ? b->y - DB_SPECKS_HALO : seen.first;
     const int wanted = b->y + b->rows + DB_SPECKS_HALO;
-    const int bottom = wanted < w->image.grid.height ? wanted : w->image.grid.height;
+    const int bottom = wanted < seen.end ? wanted : seen.end;
     const size_t from = (size_t)(top - seen.first) * (size_t)w->image.grid.width;
     return (struct db_specks_block){.planes = b->planes,
                                     .before = w->before + from,

@@ -3,6 +3,7 @@
 #include "check.h"
 #include "fixture.h"
 #include "gis/raster.h"
+#include "gis/sieve.h"
 #include "support.h"
 
 #include "hs/error.h"
@@ -206,6 +207,37 @@ TEST(specks_take_the_class_around_them_unless_they_are_spared)
     assert_true(fixture_fails(HS_EXIT_FAILED, "there is no class `castle`; there are field",
                               "segment " SCENE " --net %s --out %s --spare castle", SCENE_PATHS,
                               fixture_path("scene.net"), fixture_path("never.tif")));
+}
+
+/* More rows than a band of the sieve, and no sieve: bands have no rows around them. */
+TEST(an_image_of_many_rows_is_classified_without_a_sieve)
+{
+    enum { ACROSS = 4096, ROWS = DB_SIEVE_ROWS + 3 };
+    static float bands[2][ACROSS * ROWS], found[ACROSS * ROWS];
+    static uint8_t valid[ACROSS * ROWS];
+    struct db_grid grid = fixture_grid(ACROSS, ROWS);
+    struct db_raster r;
+    for (int i = 0; i < ACROSS * ROWS; i++) {
+        const bool is_water = i / ACROSS % 3 == 0;
+        bands[0][i] = is_water ? 15 : 40;
+        bands[1][i] = is_water ? 20 : 90;
+    }
+    train_scene("scene.net");
+    fixture_raster("tall1.tif", &grid, GDT_Byte, bands[0], 0);
+    fixture_raster("tall2.tif", &grid, GDT_Byte, bands[1], 0);
+    OSRDestroySpatialReference(grid.crs);
+    assert_int_equal(fixture_run(NULL, 0,
+                                 "segment --image %s,%s --classes %s --net %s --out %s --sieve 0",
+                                 fixture_path("tall1.tif"), fixture_path("tall2.tif"),
+                                 fixture_path("scene.classes"), fixture_path("scene.net"),
+                                 fixture_path("tall.tif")),
+                     0);
+    assert_int_equal(db_raster_open_one(&r, fixture_path("tall.tif")), 0);
+    assert_int_equal(db_raster_read(&r, 0, ROWS, found, valid), 0);
+    for (int i = 0; i < ACROSS * ROWS; i++) {
+        assert_int_equal((int)found[i], i / ACROSS % 3 == 0);
+    }
+    db_raster_close(&r);
 }
 
 TEST(one_seed_gives_one_net_byte_for_byte)

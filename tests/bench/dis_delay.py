@@ -1,5 +1,5 @@
 """How long a state of an entity is on its way through landmass-dis: from the sending of its datagram to the port until the
-last frame of its set can be read. Usage: dis.py PROGRAM [STATES]
+last frame of its set can be read. Usage: dis_delay.py PROGRAM [STATES]
 
 Each state is a surprise (the entity is 50 m from where it was), so that a set is due at once. Once alone, and once while 200
 other entities tell their states 5 times a second each. The log goes through a pipe; a CAN bus adds 135 us a frame at
