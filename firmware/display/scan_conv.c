@@ -366,26 +366,31 @@ struct lm_frame lm_patch_square(const struct lm_frame *frame)
 
 enum { LINE_Q20 = 1 << 20, SHARE_Q7 = 1 << 7, ROWS_AT_ONCE = 64 };
 
-/* Set the cells that a row lies between: row r of n is (r + 1/2) C / n - 1/2 above the middle of
- * cell 0, of C cells. Sixteen rows lie among 2^10 * 15 / 183 + 1 cells at most, for no square has
- * fewer than 183 rows: with what `first` is held back, below 2^8. */
-static void set_cells(struct lm_patch_painter *p, uint32_t row)
+/* The lower of the two cells that a row lies between, and behind the point the share of the upper
+ * one: row r of n is (r + 1/2) C / n - 1/2 above the middle of cell 0, of C cells. */
+static uint32_t cell_q7_of(const struct lm_patch_painter *p, uint32_t row)
 {
-    struct lm_k_patch_cells *c = &p->row_cells;
     const uint32_t rows = p->square.height_px;
     const int64_t above_q7 =
         (int64_t)(2 * row + 1) * p->cells * SHARE_Q7 / (2 * rows) - SHARE_Q7 / 2;
-    const int64_t last_q7 = (int64_t)(p->cells - 1) * SHARE_Q7;
-    const uint32_t held_q7 = (uint32_t)fx_clamp_i64(above_q7, 0, last_q7);
-    const uint32_t cell = held_q7 / SHARE_Q7;
-    uint16_t *const first = &c->first[row / LM_K_PATCH_GROUP];
-    if (row % LM_K_PATCH_GROUP == 0) {
-        const uint32_t room = p->cells < LM_K_PATCH_CLOSE ? 0 : p->cells - LM_K_PATCH_CLOSE;
-        *first = (uint16_t)fx_min_u32(cell, room);
+    return (uint32_t)fx_clamp_i64(above_q7, 0, (int64_t)(p->cells - 1) * SHARE_Q7);
+}
+
+/* Set the cells of a group of rows. They lie among 2^10 * 15 / 183 + 1 cells at most, for no square
+ * has fewer than 183 rows: with what `first` is held back, below 2^8. */
+static void set_cells(struct lm_patch_painter *p, uint32_t group)
+{
+    struct lm_k_patch_cells *c = &p->row_cells;
+    const uint32_t row0 = group * LM_K_PATCH_GROUP;
+    const uint32_t room = p->cells < LM_K_PATCH_CLOSE ? 0 : p->cells - LM_K_PATCH_CLOSE;
+    const uint32_t first = fx_min_u32(cell_q7_of(p, row0) / SHARE_Q7, room);
+    c->first[group] = (uint16_t)first;
+    for (uint32_t row = row0; row < row0 + LM_K_PATCH_GROUP; row++) {
+        const uint32_t cell_q7 = cell_q7_of(p, row);
+        c->above[row] = (uint8_t)(cell_q7 / SHARE_Q7 - first);
+        c->part_q7[row] = (uint8_t)(cell_q7 % SHARE_Q7);
+        c->are_close = c->are_close && c->above[row] < LM_K_PATCH_CLOSE;
     }
-    c->above[row] = (uint8_t)(cell - *first);
-    c->part_q7[row] = (uint8_t)(held_q7 % SHARE_Q7);
-    c->are_close = c->are_close && c->above[row] < LM_K_PATCH_CLOSE;
 }
 
 /* Lines a pixel in a row. Row r lies (2 r + 1) C / 2 n cells beyond the near edge, of C cells in n
@@ -421,8 +426,8 @@ void lm_patch_painter_set(struct lm_patch_painter *p, const struct lm_frame *fra
         p->step_q20[row] = step_q20_of(p, fan, row);
         least_q20 = fx_min_u32(least_q20, (uint32_t)p->step_q20[row]);
     }
-    for (uint32_t row = 0; row < rows || row % LM_K_PATCH_GROUP != 0; row++) { /* whole groups */
-        set_cells(p, row);
+    for (uint32_t group = 0; group * LM_K_PATCH_GROUP < rows; group++) {
+        set_cells(p, group);
     }
     /* Over n lines lie n / step pixels, and one more at most where that is no whole number. */
     const uint32_t lines = LM_K_STRIP_PX * least_q20 / LINE_Q20;
