@@ -444,6 +444,46 @@ TEST(a_patch_grows_strip_by_strip)
     grow_patch(768, &few); /* more than 16 pixels from line to line */
 }
 
+static uint32_t blocks_of(const struct lm_damage *d)
+{
+    uint32_t count = 0;
+    for (uint32_t band = 0; band < LM_BANDS; band++) {
+        count += (uint32_t)__builtin_popcountll(d->band[band]);
+    }
+    return count;
+}
+
+/* What a line changes is in the damage, and the lines of a patch mark no more than a few times as
+ * many blocks as it has. */
+TEST(a_patch_marks_what_it_paints)
+{
+    const struct lm_patch_fan fan = fan_of(256, 60000, 5);
+    static struct lm_patch_painter painter;
+    static uint8_t before[512 * 512];
+    struct lm_damage damage;
+    struct glass g;
+    uint32_t blocks = 0;
+    make_glass(&g, 512, 512);
+    g.plane.damage = &damage;
+    lm_patch_painter_set(&painter, &g.frame, &fan);
+    for (uint32_t line = 0; line < fan.lines; line++) {
+        uint8_t grey[PATCH_CELLS + 1];
+        memset(grey, line % 2 ? 200 : 60, sizeof grey);
+        memcpy(before, g.plane.pixels, sizeof before);
+        lm_damage_clear(&damage);
+        lm_scan_conv_patch(&painter, &g.plane, line, grey);
+        blocks += blocks_of(&damage);
+        for (int32_t i = 0; i < 512 * 512; i++) {
+            const struct lm_rectangle pixel = {i % 512, i / 512, i % 512 + 1, i / 512 + 1};
+            assert_true(before[i] == g.plane.pixels[i] || lm_damage_covers(&damage, &pixel));
+        }
+    }
+    const struct lm_frame s = lm_patch_square(&g.frame);
+    const uint32_t all = s.width_px / LM_BLOCK_WIDTH_PX * (s.height_px / LM_BLOCK_HEIGHT_PX);
+    assert_in_range(blocks, all, 5 * all);
+    close_glass(&g);
+}
+
 /* What a pixel of a frame that was moved shows: that of where it came from, or black. */
 static uint8_t moved(const struct glass *g, const uint8_t *before, int32_t x, int32_t y)
 {
