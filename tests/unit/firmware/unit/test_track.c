@@ -238,6 +238,12 @@ TEST(a_mover_is_acquired_with_range_and_speed_and_lost_when_it_crosses)
     is_near(t->seen.range_rate_mm_s / 1000.0, -162 * cos(t->seen.angle * 2 * M_PI / 4294967296.0),
             2);
     assert_true(says(r, "GMTT") && says(r, "23KT"));
+    /* The glass shows where it goes: south, 150 degrees from what is up there. */
+    struct lm_symbols s = {.view = r->unit.picture.view};
+    s.view.up = hs_bam(30);
+    lm_tracking_describe(&r->unit, &s);
+    assert_true(s.has_track_course);
+    is_near(s.track_course * 360.0 / 4294967296.0, 150, 0.1);
     moving.heading = hs_bam(90);
     moving.speed_mm_s = 12000;
     const struct lm_mover_state now = lm_mover_state_at(&moving, r->unit.exercise.time_us);
