@@ -364,16 +364,15 @@ struct lm_frame lm_patch_square(const struct lm_frame *frame)
     return square;
 }
 
-enum { LINE_Q20 = 1 << 20, SHARE_Q7 = 1 << 7, ROWS_AT_ONCE = 64 };
+enum { CELL_Q7 = 1 << 7, ROWS_AT_ONCE = 64 };
 
-/* The lower of the two cells that a row lies between, and behind the point the share of the upper
- * one: row r of n is (r + 1/2) C / n - 1/2 above the middle of cell 0, of C cells. */
+/* Where a row lies, in cells above the middle of cell 0: row r of n at (r + 1/2) C / n - 1/2, of C
+ * cells. Below the point is the share of the upper of the two that it lies between. */
 static uint32_t cell_q7_of(const struct lm_patch_painter *p, uint32_t row)
 {
     const uint32_t rows = p->square.height_px;
-    const int64_t above_q7 =
-        (int64_t)(2 * row + 1) * p->cells * SHARE_Q7 / (2 * rows) - SHARE_Q7 / 2;
-    return (uint32_t)fx_clamp_i64(above_q7, 0, (int64_t)(p->cells - 1) * SHARE_Q7);
+    const int64_t above_q7 = (int64_t)(2 * row + 1) * p->cells * CELL_Q7 / (2 * rows) - CELL_Q7 / 2;
+    return (uint32_t)fx_clamp_i64(above_q7, 0, (int64_t)(p->cells - 1) * CELL_Q7);
 }
 
 /* Set the cells of a group of rows. They lie among 2^10 * 15 / 183 + 1 cells at most, for no square
@@ -383,12 +382,12 @@ static void set_cells(struct lm_patch_painter *p, uint32_t group)
     struct lm_k_patch_cells *c = &p->row_cells;
     const uint32_t row0 = group * LM_K_PATCH_GROUP;
     const uint32_t room = p->cells < LM_K_PATCH_CLOSE ? 0 : p->cells - LM_K_PATCH_CLOSE;
-    const uint32_t first = fx_min_u32(cell_q7_of(p, row0) / SHARE_Q7, room);
+    const uint32_t first = fx_min_u32(cell_q7_of(p, row0) / CELL_Q7, room);
     c->first[group] = (uint16_t)first;
     for (uint32_t row = row0; row < row0 + LM_K_PATCH_GROUP; row++) {
         const uint32_t cell_q7 = cell_q7_of(p, row);
-        c->above[row] = (uint8_t)(cell_q7 / SHARE_Q7 - first);
-        c->part_q7[row] = (uint8_t)(cell_q7 % SHARE_Q7);
+        c->above[row] = (uint8_t)(cell_q7 / CELL_Q7 - first);
+        c->part_q7[row] = (uint8_t)(cell_q7 % CELL_Q7);
         c->are_close = c->are_close && c->above[row] < LM_K_PATCH_CLOSE;
     }
 }
@@ -407,9 +406,9 @@ static int32_t step_q20_of(const struct lm_patch_painter *p, const struct lm_pat
     const int64_t middle = 2 * (int64_t)fan->cells * fan->centre_m_q8;
     const int64_t there =
         rows * (2 * (int64_t)fan->centre_m_q8 - side_m_q8) + (2 * (int64_t)row + 1) * side_m_q8;
-    const int64_t most_q20 = (int64_t)LINE_Q20 << 6;
-    const int64_t step_q20 = there > 0 ? middle * LINE_Q20 / there : most_q20;
-    return (int32_t)fx_clamp_i64(step_q20, LINE_Q20 >> 6, most_q20);
+    const int64_t most_q20 = (int64_t)LM_K_LINE_Q20 << 6;
+    const int64_t step_q20 = there > 0 ? middle * LM_K_LINE_Q20 / there : most_q20;
+    return (int32_t)fx_clamp_i64(step_q20, LM_K_LINE_Q20 >> 6, most_q20);
 }
 
 void lm_patch_painter_set(struct lm_patch_painter *p, const struct lm_frame *frame,
@@ -430,7 +429,7 @@ void lm_patch_painter_set(struct lm_patch_painter *p, const struct lm_frame *fra
         set_cells(p, group);
     }
     /* Over n lines lie n / step pixels, and one more at most where that is no whole number. */
-    const uint32_t lines = LM_K_STRIP_PX * least_q20 / LINE_Q20;
+    const uint32_t lines = LM_K_STRIP_PX * least_q20 / LM_K_LINE_Q20;
     p->is_wide = lines == 0;
     p->strip_lines = fx_min_u32(fx_max_u32(lines, 1), LM_K_STRIP_LINES);
 }
@@ -439,7 +438,7 @@ void lm_patch_painter_set(struct lm_patch_painter *p, const struct lm_frame *fra
  * pixels left of the square's middle, and line -1, which is equal to line 0, (N + 1) / 2 lines. */
 static void begin(struct lm_patch_painter *p, const uint8_t *grey)
 {
-    const int64_t middle_q20 = ((int64_t)p->lines + 1) * (LINE_Q20 / 2);
+    const int64_t middle_q20 = ((int64_t)p->lines + 1) * (LM_K_LINE_Q20 / 2);
     for (uint32_t row = 0; row < p->square.height_px; row++) {
         const int64_t left_q20 = (p->square.width_px - 1) * (int64_t)p->step_q20[row] / 2;
         p->on_q20[row] = (int32_t)fx_clamp_i64(middle_q20 - left_q20, 0, INT32_MAX / 2);
@@ -453,14 +452,14 @@ static void begin(struct lm_patch_painter *p, const uint8_t *grey)
  * of more pixels than a kernel takes. */
 static void paint_pixels(const struct lm_k_patch_strip *s, uint32_t right)
 {
-    const int32_t end_q20 = (int32_t)s->lines * LINE_Q20;
+    const int32_t end_q20 = (int32_t)s->lines * LM_K_LINE_Q20;
     uint8_t *pixels = s->pixels;
     for (uint32_t i = 0; i < s->rows; i++, pixels += s->up) {
         int32_t on_q20 = s->on_q20[i];
         uint32_t x = s->column_px[i];
         for (; on_q20 < end_q20 && x < right; x++, on_q20 += s->step_q20[i]) {
             const uint8_t *const held = s->held[i] + ((uint32_t)on_q20 >> 20);
-            const uint16_t share_q7 = (uint16_t)((uint32_t)on_q20 >> 13 & (SHARE_Q7 - 1));
+            const uint16_t share_q7 = (uint16_t)((uint32_t)on_q20 >> 13 & (LM_K_LINE_Q7 - 1));
             pixels[x] = lm_k_grey_between(held[0], held[1], share_q7);
         }
         s->column_px[i] = (uint16_t)x;

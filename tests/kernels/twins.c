@@ -737,7 +737,7 @@ static struct lm_k_patch_cells patch_cells(const struct input *in, uint32_t rows
     return c;
 }
 
-/* Rows whose pixels end beside one another: 16 greys of each row in 4 entries of a line. */
+/* Sixteen greys of each row, in four entries of a line. */
 static void run_patch_hold(const struct input *in, struct output *out, bool is_plain)
 {
     const uint32_t rows = 1 + in->cells % 128;

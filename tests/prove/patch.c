@@ -25,7 +25,7 @@ void prove_strip(void)
     uint16_t column_px = nondet_u16();
     ASSUME(lines >= 1 && lines <= LM_K_STRIP_LINES);
     ASSUME(step_q20 >= 1 && step_q20 <= STEP_MOST_Q20);
-    ASSUME((int64_t)step_q20 * LM_K_STRIP_PX >= (int64_t)lines * LINE_Q20);
+    ASSUME((int64_t)step_q20 * LM_K_STRIP_PX >= (int64_t)lines * LM_K_LINE_Q20);
     ASSUME(on_q20 >= 0 && on_q20 < MOST_Q20);
     ASSUME(column_px <= COLUMNS - LM_K_STRIP_PX);
     const uint16_t begun_px = column_px;
@@ -38,7 +38,7 @@ void prove_strip(void)
                                            .up = -COLUMNS,
                                            .rows = 1};
     lm_k_patch_paint(&strip);
-    const int32_t count = column_px - begun_px, end_q20 = (int32_t)lines * LINE_Q20;
+    const int32_t count = column_px - begun_px, end_q20 = (int32_t)lines * LM_K_LINE_Q20;
     PROVE(count >= 0 && count <= LM_K_STRIP_PX && on_q20 >= 0);
     PROVE(begun_q20 < end_q20 ? count >= 1 && on_q20 < step_q20
                               : count == 0 && on_q20 == begun_q20 - end_q20);

@@ -1,7 +1,7 @@
 #include "../plain.h"
 #include "neon.h"
 
-enum { LINE_Q20 = 1 << 20, LINE_Q7 = 1 << 7, Q20_TO_Q7 = 13 };
+enum { Q20_TO_Q7 = 13 };
 
 /* lm_k_grey_between of sixteen. */
 static inline uint8x16_t neon_between(uint8x16_t first, uint8x16_t second, uint16x8_t low_q7,
@@ -75,9 +75,9 @@ static inline uint16x8x2_t neon_places_q7(int32_t on_q20, int32_t step_q20)
 void lm_k_patch_paint(const struct lm_k_patch_strip *lent)
 {
     const struct lm_k_patch_strip s = *lent; /* no store can change it */
-    const int32_t end_q20 = (int32_t)s.lines * LINE_Q20;
-    const uint16x8_t end_q7 = vdupq_n_u16((uint16_t)(s.lines * LINE_Q7));
-    const uint16x8_t share_mask = vdupq_n_u16(LINE_Q7 - 1);
+    const int32_t end_q20 = (int32_t)s.lines * LM_K_LINE_Q20;
+    const uint16x8_t end_q7 = vdupq_n_u16((uint16_t)(s.lines * LM_K_LINE_Q7));
+    const uint16x8_t share_mask = vdupq_n_u16(LM_K_LINE_Q7 - 1);
     uint8_t *pixels = s.pixels;
     for (uint32_t i = 0; i < s.rows; i++, pixels += s.up) {
         const int32_t on_q20 = s.on_q20[i], step_q20 = s.step_q20[i];

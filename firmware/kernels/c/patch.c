@@ -2,7 +2,7 @@
 #include "fx/sat.h"
 #include "lm/kernels_display.h"
 
-enum { LINE_Q20 = 1 << 20, LINE_Q7 = 1 << 7, Q20_TO_Q7 = 13 };
+enum { Q20_TO_Q7 = 13 };
 
 /* Sixteen greys that lie between two each, of which the first is a pair's lower byte. gcc makes
  * vectors of the loops that stand between the look-ups, but of none that it has unrolled whole. */
@@ -39,14 +39,14 @@ static inline uint32_t paint_row(const uint8_t held[LM_K_HELD], uint32_t lines, 
 {
     uint8_t line[LM_K_STRIP_PX];
     uint16_t share_q7[LM_K_STRIP_PX], pair[LM_K_STRIP_PX];
-    const uint32_t end_q7 = lines * LINE_Q7;
+    const uint32_t end_q7 = lines * LM_K_LINE_Q7;
     uint32_t count = 0;
 #pragma GCC unroll 1
     for (uint32_t k = 0; k < LM_K_STRIP_PX; k++) {
         const uint32_t on_q7 = (on_q20 + k * step_q20) >> Q20_TO_Q7;
         const uint16_t place_q7 = (uint16_t)fx_min_u32(on_q7, end_q7);
-        line[k] = (uint8_t)(place_q7 / LINE_Q7);
-        share_q7[k] = place_q7 % LINE_Q7;
+        line[k] = (uint8_t)(place_q7 / LM_K_LINE_Q7);
+        share_q7[k] = place_q7 % LM_K_LINE_Q7;
         count += on_q7 < end_q7;
     }
     for (uint32_t k = 0; k < LM_K_STRIP_PX; k++) {
@@ -59,7 +59,7 @@ static inline uint32_t paint_row(const uint8_t held[LM_K_HELD], uint32_t lines, 
 void lm_k_patch_paint(const struct lm_k_patch_strip *lent)
 {
     const struct lm_k_patch_strip s = *lent; /* no store can change it */
-    const int32_t end_q20 = (int32_t)s.lines * LINE_Q20;
+    const int32_t end_q20 = (int32_t)s.lines * LM_K_LINE_Q20;
     uint8_t *pixels = s.pixels;
     for (uint32_t i = 0; i < s.rows; i++, pixels += s.up) {
         const int32_t on_q20 = s.on_q20[i], step_q20 = s.step_q20[i];

@@ -8,12 +8,14 @@
 #include <stdint.h>
 
 enum {
-    LM_K_PATCH_ROWS = 1024, /* of a patch's picture, at most */
-    LM_K_PATCH_GROUP = 16,  /* rows whose cells are fetched at once */
-    LM_K_PATCH_CLOSE = 32,  /* cells among which these are, if they are close */
-    LM_K_HELD = 16,         /* greys that have room beside one another for each row */
-    LM_K_STRIP_LINES = 14,  /* lines of a strip, at most: one has a grey before and one behind */
-    LM_K_STRIP_PX = 16      /* pixels that a row has in a strip, at most */
+    LM_K_PATCH_ROWS = 1024,  /* of a patch's picture, at most */
+    LM_K_PATCH_GROUP = 16,   /* rows whose cells are fetched at once */
+    LM_K_PATCH_CLOSE = 32,   /* cells among which these are, if they are close */
+    LM_K_HELD = 16,          /* greys that have room beside one another for each row */
+    LM_K_STRIP_LINES = 14,   /* lines of a strip, at most: one has a grey before and one behind */
+    LM_K_LINE_Q20 = 1 << 20, /* from one line to the next, where a pixel's place is counted */
+    LM_K_LINE_Q7 = 1 << 7,   /* and where a share is taken of it */
+    LM_K_STRIP_PX = 16       /* pixels that a row has in a strip, at most */
 };
 
 /* The two cells of a line between whose middles each row lies, from the bottom up. */
@@ -28,7 +30,7 @@ struct lm_k_patch_cells {
  * times 2^7: 16 bits hold it. */
 static inline uint8_t lm_k_grey_between(uint8_t first, uint8_t second, uint16_t share_q7)
 {
-    const int16_t more = (int16_t)((second - first) * (int16_t)share_q7 + (1 << 6));
+    const int16_t more = (int16_t)((second - first) * (int16_t)share_q7 + LM_K_LINE_Q7 / 2);
     return (uint8_t)(first + (more >> 7));
 }
 

@@ -8,7 +8,7 @@
 #include <stdint.h>
 
 /* How the records of an image are stored; IMAGE_COMPRESSION_QUICK is for records that are read
- * again soon: a quarter longer than LZ4's, in a tenth of the time. */
+ * again soon: LZ4 without the search for the shortest. */
 enum image_compression { IMAGE_COMPRESSION_LZ4, IMAGE_COMPRESSION_NONE, IMAGE_COMPRESSION_QUICK };
 #define IMAGE_COMPRESSION_WORDS "lz4|none"
 
@@ -16,8 +16,8 @@ enum image_compression { IMAGE_COMPRESSION_LZ4, IMAGE_COMPRESSION_NONE, IMAGE_CO
  */
 const char *image_pack_encoder(void);
 
-/* Store a tile, whose checksum is made, in `record`. It is compressed if the result is shorter than
- * the raw record and the firmware unpacks it to the same bytes. Returns its size in units of
+/* Store a tile as it is, its checksum too, in `record`. It is compressed if the result is shorter
+ * than the raw record and the firmware unpacks it to the same bytes. Returns its size in units of
  * LM_DB_PLACE_BYTES: that of a raw record says that it is one. The bytes depend on the tile and on
  * image_pack_encoder() alone. Cost: 0.3 ms on a PC. */
 uint16_t image_pack(const struct lm_tile *tile, enum image_compression how,

@@ -417,12 +417,14 @@ static void grow_patch(uint16_t side_px, const struct lm_patch_fan *fan)
     for (uint32_t line = 0; line < fan->lines; line++) {
         lm_scan_conv_patch(&painter, &g.plane, line, grey);
         assert_true(painter.waiting < painter.strip_lines);
-        for (int32_t y = s.top_px; y < s.top_px + s.height_px && line % 9 == 0; y++) {
+        if (line % 9 != 0 || painter.waiting > line) { /* no strip is whole yet */
+            continue;
+        }
+        for (int32_t y = s.top_px; y < s.top_px + s.height_px; y++) {
             const double up = 0.5 - (y + 0.5 - s.top_px) / s.height_px;
-            const double painted = (double)line - painter.waiting;
             const double end =
-                s.left_px + (right_of(fan, (uint32_t)painted, up) + 0.5) * s.width_px;
-            for (int32_t x = s.left_px; painted >= 0 && x < s.left_px + s.width_px; x++) {
+                s.left_px + (right_of(fan, line - painter.waiting, up) + 0.5) * s.width_px;
+            for (int32_t x = s.left_px; x < s.left_px + s.width_px; x++) {
                 const uint8_t shown = g.plane.pixels[y * g.plane.width_px + x];
                 if (x + 0.5 < end - 0.1) {
                     assert_int_equal(shown, 200);
