@@ -4,11 +4,15 @@ BOARD ?= bench-linux
 O     := build/$(BOARD)
 include bsp/$(BOARD)/board.mk
 
-OPT  ?= -O2 -g
+# -g1 has functions and lines, which a backtrace needs; a debugger wants OPT='-Og -g'. It is a tenth of the time of compiling.
+OPT  ?= -O2 -g1
 CORES := $(shell nproc)
 CLANG ?= clang-19
 PKG_CONFIG ?= pkg-config
-pkgs  = $(shell $(PKG_CONFIG) --$(1) $(2) 2>/dev/null)
+# $(call pkgs,WHAT,PACKAGES): what pkg-config says, asked once of each list.
+pkgs_name = said--$(1)-$(subst $(subst ,, ),-,$(strip $(2)))
+pkgs = $(if $(strip $(2)),$(if $(filter undefined,$(flavor $(pkgs_name))),$(eval \
+    $(pkgs_name) := $$(shell $(PKG_CONFIG) --$(1) $(2) 2>/dev/null)))$($(pkgs_name)))
 
 LIB_fixed    := $(O)/libfixed.a
 LIB_firmware := $(O)/libfirmware.a

@@ -54,8 +54,8 @@ LIB_tables    := $(call host_archives,tables)
 # Loops over pixels and rays that are worth vectorising, for the processor that builds as OPT_core has it. No product is
 # added to a sum without being rounded, so that what they make is the same on all.
 VECTORS_host := $(if $(filter yes,$(HAS_AVX2)),-march=x86-64-v3 -ffp-contract=off)
-VECTOR_LOOPS := classify/mlp_apply reflectivity/reflect reflectivity/place image/codes image/ground image/verify_tile \
-    $(addprefix tracer/,first_bounce projection ray_angles scene trace_tile)
+VECTOR_LOOPS := classify/mlp_apply classify/units reflectivity/reflect reflectivity/place image/codes image/ground image/verify_tile \
+    $(addprefix scene/,erosion land noise) $(addprefix tracer/,first_bounce projection ray_angles scene trace_tile)
 $(VECTOR_LOOPS:%=$(O)/host-sim/%.o): EXTRA_CFLAGS := -O3 -fno-math-errno -fno-trapping-math $(VECTORS_host)
 
 # The Debian package of the tools. HAS_AVX2= on the command line makes programs for any processor of this kind.

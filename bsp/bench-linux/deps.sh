@@ -2,15 +2,22 @@
 # Install what a list, packages.txt unless it is named, has and this machine lacks. Needs root, or sudo. Usage: deps.sh [LIST]
 set -eu
 list=$(sed "s/#.*//" "${1:-$(dirname "$0")/packages.txt}")
+# " NAME:ARCHITECTURE " of all that is installed; a name without one means this machine's, or none in particular.
+have=$(dpkg-query -W -f ' ${Package}:${Architecture} ${db:Status-Status}\n' | sed -n 's/ installed$/ /p')
+own=$(dpkg --print-architecture)
+has() { # PACKAGE
+    case $1 in
+    *:*) case $have in *" $1 "*) return 0 ;; esac ;;
+    *) case $have in *" $1:$own "* | *" $1:all "*) return 0 ;; esac ;;
+    esac
+    return 1
+}
 missing=
 for package in $list; do
-    case $package in
-    \?*)
-        package=${package#?}
-        apt-cache show "$package" >/dev/null 2>&1 || continue
-        ;;
-    esac
-    dpkg-query -W -f '${Status}' "$package" 2>/dev/null | grep -q 'ok installed' || missing="$missing $package"
+    name=${package#\?}
+    has "$name" && continue
+    [ "$name" = "$package" ] || apt-cache show "$name" >/dev/null 2>&1 || continue
+    missing="$missing $name"
 done
 [ -n "$missing" ] || exit 0
 

@@ -79,10 +79,11 @@ static void weigh(const float *from, const struct db_mlp_layer *l, int count, fl
                 l->weights, l->from, 1, sums, l->to);
 }
 
-static void squash(float *values, size_t count, enum db_unit unit)
+/* Outputs are compared with 0 and 1: what is far off must still tell a slope. */
+static void sigmoid(float *values, size_t count)
 {
     for (size_t i = 0; i < count; i++) {
-        values[i] = unit == DB_UNIT_TANH ? tanhf(values[i]) : 1 / (1 + expf(-values[i]));
+        values[i] = 1 / (1 + expf(-values[i]));
     }
 }
 
@@ -109,14 +110,14 @@ void db_mlp_forward(const struct db_mlp *net, const struct db_mlp_batch *batch)
     for (int i = 0; i < net->layer_count; i++) {
         const struct db_mlp_layer l = db_mlp_layer(net, net->weights, i);
         weigh(from, &l, batch->count, to);
-        squash(to, count * (size_t)l.to, net->unit);
+        db_units_say(net->unit, to, count * (size_t)l.to);
         from = to;
         to += count * (size_t)l.to;
     }
     const struct db_mlp_layer last = db_mlp_layer(net, net->weights, net->layer_count);
     weigh(from, &last, batch->count, batch->outputs);
     if (net->loss == DB_LOSS_SQUARE) {
-        squash(batch->outputs, count * (size_t)net->output_count, DB_UNIT_SIGMOID);
+        sigmoid(batch->outputs, count * (size_t)net->output_count);
         return;
     }
     for (size_t i = 0; i < count; i++) {

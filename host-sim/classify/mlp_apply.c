@@ -9,24 +9,6 @@
 /* Pixels at a time: all rows of hidden units of a usual network then stay in the first cache. */
 enum { LANE = 256 };
 
-/* Where the fraction passes 1 (found by bisection in double precision). */
-#define TANH_END 4.97f
-
-static inline float fast_tanh(float x)
-{
-    x = x > TANH_END ? TANH_END : x;
-    x = x < -TANH_END ? -TANH_END : x;
-    const float s = x * x;
-    const float above = x * (135135.0f + s * (17325.0f + s * (378.0f + s)));
-    const float below = 135135.0f + s * (62370.0f + s * (3150.0f + s * 28.0f));
-    return above / below;
-}
-
-float db_fast_tanh(float x)
-{
-    return fast_tanh(x);
-}
-
 /* Take the mean away and divide by the scale in the weights instead of in every pixel. */
 static void fold_normalisation(const struct db_net *net, const struct db_mlp_layer *first)
 {
@@ -82,20 +64,6 @@ static void fill(float *values, float value, int count)
     }
 }
 
-/* sigmoid(x) = (1 + tanh(x / 2)) / 2. */
-static void squash(float *values, enum db_unit unit, int count)
-{
-    if (unit == DB_UNIT_TANH) {
-        for (int i = 0; i < count; i++) {
-            values[i] = fast_tanh(values[i]);
-        }
-        return;
-    }
-    for (int i = 0; i < count; i++) {
-        values[i] = 0.5f + 0.5f * fast_tanh(0.5f * values[i]);
-    }
-}
-
 /* Some pixels on their way through the network. */
 struct lane {
     const float *planes; /* of the first pixel: what feeds the next layer */
@@ -113,7 +81,7 @@ static void find_unit(const struct db_applied *a, const struct db_mlp_layer *l, 
         add_scaled(unit, lane->planes + (size_t)i * lane->stride,
                    l->weights[(size_t)j * (size_t)l->from + (size_t)i], lane->count);
     }
-    squash(unit, a->shape.unit, lane->count);
+    db_units_say(a->shape.unit, unit, (size_t)lane->count);
 }
 
 /* The hidden layers but the last; `lane` then holds what they say. */

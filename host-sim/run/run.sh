@@ -82,9 +82,13 @@ target coach 42.0060 -28.9900 ground+3 10 swerling 1 35 moving 16 3000
 target ferry 42.0250 -29.0900 ground+6 20 swerling 1 42 moving 7 6000
 EOF
 
-say "Build the flash image and check every byte of it"
+say "Build the flash image"
 sh host-sim/run/image.sh "$1" $out/surroundings/terrain.tif $out/scene.lmdb
-"$bin"/landmass-db verify $out/scene.lmdb
+
+verify() {
+    say "Check every byte of the image"
+    "$bin"/landmass-db verify $out/scene.lmdb
+}
 
 # SECONDS PLACE CELL SIDE: five seconds for the patch, then its picture.
 look_at() {
@@ -149,8 +153,9 @@ exercise() {
     "$bin"/landmass-sim --db $out/scene.lmdb --replay $out/recording.log --from 35.9 --png $out/replay --every 1
 }
 
-for flight in arrival east modes exercise; do beside $flight $flight; done
-for flight in arrival east modes exercise; do join $flight; done
+# The longest first: what it records is flown again.
+for part in exercise arrival east modes verify; do beside $part $part; done
+for part in verify arrival east modes exercise; do join $part; done
 
 say "Done in $(($(date +%s) - start)) s. Look at:"
 ls $out/scene/preview.png $out/classes.png $out/pictures/*.png

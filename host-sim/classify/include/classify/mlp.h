@@ -6,10 +6,11 @@
 #ifndef CLASSIFY_MLP_H
 #define CLASSIFY_MLP_H
 
+#include "classify/units.h"
+
 #include <stddef.h>
 #include <stdint.h>
 
-enum db_unit { DB_UNIT_TANH, DB_UNIT_SIGMOID };
 enum db_loss {
     DB_LOSS_SQUARE,       /* sigmoid outputs, mean of half the squared errors: Heaton's */
     DB_LOSS_CROSS_ENTROPY /* softmax outputs, mean of -ln of the right one */

@@ -4,11 +4,6 @@
 
 #include "classify/net_file.h"
 
-/* tanh by the seventh convergent of Lambert's continued fraction, x (135135 + 17325 x^2 + 378 x^4 +
- * x^6) / (135135 + 62370 x^2 + 3150 x^4 + 28 x^6), held at +-1 where it would pass them. Error at
- * most 1e-4 anywhere. */
-float db_fast_tanh(float x);
-
 /* A network with the normalisation folded into its first layer. */
 struct db_applied {
     struct db_mlp shape; /* without weights */

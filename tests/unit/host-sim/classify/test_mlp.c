@@ -5,6 +5,7 @@
 #include "classify/mlp_train.h"
 #include "classify/net_file.h"
 #include "classify/plot.h"
+#include "classify/units.h"
 #include "fixture.h"
 #include "support.h"
 
