@@ -24,8 +24,13 @@ sanitized = $(patsubst $(O)/%,$(O)/sanitized/%,$(1))
 
 # -O1 behind OPT: findings name the lines as they are written. The sanitizers' own code hides from gcc which range a
 # number has, so that it would warn of conversions that the plain build shows to be fine.
-SANITIZED_CFLAGS := -O1 -fsanitize=$(SANITIZERS)$(if $(FUZZER),$(comma)fuzzer-no-link) -fno-sanitize-recover=all \
-    -fno-omit-frame-pointer -Wno-conversion
+#
+# FUZZER=1 tells libFuzzer of branches alone; FUZZER=compare of each comparison too, which finds more in each input and costs
+# most of its time.
+FUZZED_1       := -O2 -fsanitize=fuzzer-no-link -fno-sanitize-coverage=trace-cmp,indirect-calls
+FUZZED_compare := -O2 -fsanitize=fuzzer-no-link
+SANITIZED_CFLAGS := -O1 -fsanitize=$(SANITIZERS) -fno-sanitize-recover=all -fno-omit-frame-pointer -Wno-conversion \
+    $(FUZZED_$(FUZZER))
 $(O)/clang/%.o: override CC := clang
 $(call compile, sanitized/,, $$(VARIANT_CFLAGS) $$(SANITIZED_CFLAGS), sanitizers)
 $(call compile, clang/,,     $$(VARIANT_CFLAGS) -O3, clang)

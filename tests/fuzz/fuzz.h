@@ -60,6 +60,7 @@ static inline uint32_t fuzz_u32(struct fuzz_supply *s)
 /* The input as a file, for readers that insist on a name. */
 struct fuzz_file {
     int descriptor;
+    size_t size;
     char path[32];
 };
 
