@@ -1,7 +1,7 @@
 /* Large blocks for the libFuzzer programs, in place of malloc's (linked by --wrap; fuzz.mk). The
  * address sanitizer maps and shades each block of 128 KiB and more anew, which for structs of some
- * megabytes costs more than all that an input does with them. Here a block is kept for the next:
- * what was touched of it is given back, and reads as zero again.
+ * megabytes costs more than all that an input does with them. Here a block is kept for the next;
+ * of one of more than 512 KiB, the pages that were touched are given back.
  *
  * What is found stays the same: each block has poisoned memory on both sides, a freed one cannot be
  * touched, and one that is freed twice aborts. A leak is seen once it has used up the places here.
@@ -13,11 +13,13 @@
 #include <sys/mman.h>
 
 #define LARGE_BYTES ((size_t)128 << 10) /* smaller ones are the sanitizer's */
+#define DENSE_BYTES ((size_t)512 << 10) /* these are mostly written all over: quicker to clear */
 #define PLACE_BYTES ((size_t)256 << 20) /* so are those that do not fit */
 
 enum { PLACES = 32, PAGE = 4096, FILLED = 4096, FILLING = 0xbe };
 
 const char *__asan_default_options(void);
+size_t __sanitizer_get_allocated_size(const volatile void *block); /* gcc has no header for it */
 void *__real_malloc(size_t size);
 void *__real_calloc(size_t count, size_t size);
 void *__real_realloc(void *old, size_t size);
@@ -122,6 +124,9 @@ void *__wrap_calloc(size_t count, size_t size)
 {
     size_t bytes;
     void *block = __builtin_mul_overflow(count, size, &bytes) ? NULL : take(bytes);
+    if (block && bytes <= DENSE_BYTES) {
+        memset(block, 0, bytes);
+    }
     return block ? block : __real_calloc(count, size);
 }
 
@@ -135,7 +140,7 @@ void __wrap_free(void *block)
     FUZZ_ASSERT(place[i].is_used && block == block_of(i));
     const size_t bytes = whole_pages(place[i].size);
     __lsan_unregister_root_region(block, place[i].size);
-    FUZZ_ASSERT(madvise(block, bytes, MADV_DONTNEED) == 0);
+    FUZZ_ASSERT(place[i].size <= DENSE_BYTES || madvise(block, bytes, MADV_DONTNEED) == 0);
     FUZZ_ASSERT(mprotect(block, bytes, PROT_NONE) == 0);
     place[i].is_used = false;
 }
@@ -143,12 +148,13 @@ void __wrap_free(void *block)
 void *__wrap_realloc(void *old, size_t size)
 {
     const size_t i = place_of(old);
-    if (i == PLACES) {
+    if (i == PLACES && (!old || size < LARGE_BYTES)) {
         return __real_realloc(old, size);
     }
+    const size_t had = i == PLACES ? __sanitizer_get_allocated_size(old) : place[i].size;
     void *block = __wrap_malloc(size);
     if (block) {
-        memcpy(block, old, size < place[i].size ? size : place[i].size);
+        memcpy(block, old, size < had ? size : had);
         __wrap_free(old);
     }
     return block;
