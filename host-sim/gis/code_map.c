@@ -79,9 +79,7 @@ int db_code_map_read(struct db_code_map *map, const char *path, const struct db_
     struct db_text_file f;
     map->count = 0;
     map->unknown_class = DB_CODE_UNKNOWN;
-    for (int i = 0; i < DB_CODES; i++) {
-        map->line_of[i] = DB_CODE_UNKNOWN;
-    }
+    memset(map->line_of, 0xFF, sizeof map->line_of); /* DB_CODE_UNKNOWN, -1 */
     int more = db_text_open(&f, path) == 0 ? 1 : -1;
     while (more > 0) {
         more = db_text_next(&f);

@@ -4,7 +4,7 @@
 
 const uint32_t fuzz_mutations = 3000;
 
-enum { STEPS = 200, CALLS = 12, FLASH_BYTES = 4096 };
+enum { STEPS = 200, CALLS = 12, FLASH_BYTES = 4096, SIDE = 24 };
 
 static uint8_t flash_bytes[FLASH_BYTES];
 
@@ -71,6 +71,10 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
     struct fuzz_file file;
     fuzz_file_open(&file, data, size);
     if (replay_open(&p, file.path) == 0) {
+        if (size % 64 != 0) { /* most glasses are small, since pictures take longer than lines */
+            p.head.width_px = 1 + p.head.width_px % SIDE;
+            p.head.height_px = 1 + p.head.height_px % SIDE;
+        }
         fly(&p);
         replay_close(&p);
     }

@@ -12,7 +12,15 @@
 
 const uint32_t fuzz_mutations = 5000;
 
-enum { POLLS = 64, TARGETS_MAX = 40, LINES = 128, CELLS = 132, SEAL_HEAD = 1, SEAL_RECORDS = 2 };
+enum {
+    POLLS = 64,
+    TARGETS_MAX = 40,
+    LINES = 128,
+    CELLS = 132,
+    SECTION_MAX = 1 << 16,
+    SEAL_HEAD = 1,
+    SEAL_RECORDS = 2
+};
 
 /* Where FORMATS.md puts them. */
 enum {
@@ -47,16 +55,26 @@ static void seal_section(uint8_t *section, size_t size, uint8_t parts)
     }
 }
 
-/* A sound image with the section behind it; the caller frees it. */
-static uint8_t *image_with(const uint8_t *section, size_t size, size_t *image_size)
+/* A sound image, of which the first input makes a copy with room for a section behind it. */
+static size_t make_image(uint8_t **bytes)
 {
     struct tiny_image image;
     const struct tiny_spec spec = tiny_spec_at(46, 11);
     FUZZ_ASSERT(tiny_image_build(&image, &spec) == 0);
     const size_t at = (image.size + 63) / 64 * 64;
-    uint8_t *bytes = calloc(1, at + size + 1);
-    FUZZ_ASSERT(bytes);
-    memcpy(bytes, image.bytes, image.size);
+    *bytes = calloc(1, at + SECTION_MAX);
+    FUZZ_ASSERT(*bytes);
+    memcpy(*bytes, image.bytes, image.size);
+    tiny_image_free(&image);
+    return at;
+}
+
+/* That image with the section behind it, until the next call. */
+static const uint8_t *image_with(const uint8_t *section, size_t size, size_t *image_size)
+{
+    static uint8_t *bytes;
+    static size_t at;
+    at = bytes ? at : make_image(&bytes);
     memcpy(bytes + at, section, size);
     uint8_t *entry = bytes + SECTIONS_AT + 5 * SECTION_BYTES;
     put(entry, 6, 4);
@@ -65,7 +83,6 @@ static uint8_t *image_with(const uint8_t *section, size_t size, size_t *image_si
     put(bytes + IMAGE_BYTES_AT, at + size, 8);
     put(bytes + SECTION_COUNT_AT, 6, 4);
     put(bytes + CRC_AT, fx_crc32c(0, bytes, CRC_AT), 4);
-    tiny_image_free(&image);
     *image_size = at + size;
     return bytes;
 }
@@ -158,20 +175,20 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
                         .track = fuzz_u32(&supply),
                         .speed_mm_s = fuzz_u32(&supply),
                         .time_s = fuzz_u32(&supply)};
+    supply.left = supply.left < SECTION_MAX ? supply.left : SECTION_MAX;
     uint8_t *section = malloc(supply.left + 1);
     struct lm_db *db = malloc(sizeof *db);
     FUZZ_ASSERT(section && db);
     memcpy(section, supply.at, supply.left);
     seal_section(section, supply.left, parts);
     size_t image_size;
-    uint8_t *image = image_with(section, supply.left, &image_size);
+    const uint8_t *image = image_with(section, supply.left, &image_size);
     struct memory_flash flash;
     memory_flash_open(&flash, image, image_size);
     flash.fail_every = parts >> 4;
     if (lm_db_open(db, &flash.port, POLLS) == LM_OK) {
         use(db, &look);
     }
-    free(image);
     free(db);
     free(section);
     return 0;
