@@ -102,8 +102,8 @@ gallery: deps ## Fly the real data of ../shared/data and leave the pictures in b
 	@$(MAKE) --no-print-directory all
 	@sh host-sim/run/gallery.sh $(O)
 
-fuzz: deps ## Fuzz every parser for FOR seconds each (FOR=60); `make check` replays seeds and random damage
-	@sh tests/fuzz/fuzz.sh $(or $(FOR),60)
+fuzz: deps ## Fuzz every parser for FOR seconds (FOR=60), or until each has tried RUNS inputs; `make check` replays seeds and random damage
+	@sh tests/fuzz/fuzz.sh $(if $(RUNS),--until $(RUNS)) $(or $(FOR),$(if $(RUNS),0,60))
 
 cuts: $(O)/bin/tests/unit/host-sim/slots/test_cuts $(O)/bin/tests/unit/host-sim/slots/test_kills ## Cut the power of 30,000 loads of a database (LANDMASS_SEED=1), and kill 1,000 more
 	@LANDMASS_CUTS=30000 $< 'no_cut*'
