@@ -1,7 +1,7 @@
 STAGE_BENCH := $(O)/bin/tests/bench/stage_bench
 PROGRAMS += $(STAGE_BENCH)
 $(O)/tests/bench/stage_bench.o: CFLAGS_host += -Itests/golden
-$(STAGE_BENCH): $(O)/tests/bench/stage_bench.o $(O)/tests/golden/golden_signature.o \
+$(STAGE_BENCH): $(O)/tests/bench/stage_bench.o $(O)/tests/bench/patch_rig.o $(O)/tests/golden/golden_signature.o \
     $(LIB_support) $(LIB_reference) $(LIB_hs) $(LIB_firmware) $(LIB_fixed)
 $(STAGE_BENCH): LDLIBS := $(call host_links,reference)
 

@@ -1,14 +1,18 @@
-# The firmware as 32-bit code, on the Cortex-M7 of QEMU's MPS2 board: the golden pictures, and nothing else of a board.
+# The firmware as 32-bit code, on the Cortex-M7 of QEMU's MPS2 board: the golden pictures, what a patch costs, and nothing else
+# of a board.
 CORTEX_M7 := $(O)/bin/tests/cortex-m7
-CORTEX_M7_SRC := $(SRC_core) tests/golden/golden_flight.c $(addprefix tests/support/memory_,board.c flash.c) \
-    $(addprefix tests/cortex-m7/,golden.c host.c)
-CORTEX_M7_FLAGS := -mcpu=cortex-m7 -mthumb -mfloat-abi=soft -O2 -g -ffreestanding -ffunction-sections -fdata-sections
+CORTEX_M7_SRC := $(SRC_core) $(addprefix tests/cortex-m7/,host.c start.c) tests/support/memory_flash.c
+CORTEX_M7_GOLDEN := tests/cortex-m7/golden.c tests/golden/golden_flight.c tests/support/memory_board.c
+CORTEX_M7_BENCH := tests/cortex-m7/bench.c tests/bench/patch_rig.c
+CORTEX_M7_FLAGS := -mcpu=cortex-m7 -mthumb -mfloat-abi=soft -O3 -fno-tree-vectorize -g -ffreestanding -ffunction-sections -fdata-sections
 TESTS += $(CORTEX_M7)/test_golden
 
-CORTEX_M7_INC := $(INC_firmware) $(addprefix -Itests/,golden support zcu102 cortex-m7)
+CORTEX_M7_INC := $(INC_firmware) $(addprefix -Itests/,golden support zcu102 bench cortex-m7)
 $(O)/cortex-m7/%.o: override CC := arm-none-eabi-gcc
 $(call compile, cortex-m7/,, $$(CSTD) $$(WARN) $$(CORTEX_M7_FLAGS) $$(CORTEX_M7_INC), Cortex-M7)
-$(CORTEX_M7)/golden.elf: $(CORTEX_M7_SRC:%.c=$(O)/cortex-m7/%.o) linker/mps2-an500.ld
+$(CORTEX_M7)/golden.elf: $(CORTEX_M7_GOLDEN:%.c=$(O)/cortex-m7/%.o)
+$(CORTEX_M7)/bench.elf: $(CORTEX_M7_BENCH:%.c=$(O)/cortex-m7/%.o)
+$(CORTEX_M7)/golden.elf $(CORTEX_M7)/bench.elf: $(CORTEX_M7_SRC:%.c=$(O)/cortex-m7/%.o) linker/mps2-an500.ld
 	@mkdir -p $(@D)
 	$(call say,LINK,$@)
 	$(Q)arm-none-eabi-gcc $(CORTEX_M7_FLAGS) -nostartfiles -Wl,--gc-sections,-T,linker/mps2-an500.ld $(filter %.o,$^) -o $@
@@ -17,3 +21,8 @@ $(CORTEX_M7)/test_golden: tests/cortex-m7/test_golden.sh $(O)/bin/tests/zcu102/g
 	@mkdir -p $(@D)
 	@cp $< $@
 	@chmod +x $@
+
+.PHONY: bench-m7
+bench-m7: deps ## Count the instructions of a patch on a Cortex-M7, which has no vectors
+	@$(MAKE) --no-print-directory -j$(CORES) $(CORTEX_M7)/bench.elf $(STAGE_BENCH)
+	@sh tests/cortex-m7/bench.sh $(O)

@@ -8,7 +8,6 @@
 #include <string.h>
 
 int main(void);
-_Noreturn void reset(void);
 
 static int image_file;
 
@@ -43,26 +42,3 @@ int main(void)
     }
     return 0;
 }
-
-/* QEMU has loaded .data and cleared .bss. */
-_Noreturn void reset(void)
-{
-    host_exit(main());
-}
-
-static _Noreturn void fault(void)
-{
-    host_say("a fault\n");
-    host_exit(2);
-}
-
-extern char __stack_top[];
-
-struct vectors {
-    const void *stack;
-    void (*handlers[15])(void);
-};
-
-extern const struct vectors vectors;
-__attribute__((section(".vectors"), used))
-const struct vectors vectors = {__stack_top, {reset, fault, fault, fault, fault, fault}};

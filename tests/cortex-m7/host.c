@@ -5,6 +5,7 @@ enum {
     SYS_WRITE0 = 0x04,
     SYS_READ = 0x06,
     SYS_SEEK = 0x0A,
+    SYS_FLEN = 0x0C,
     SYS_EXIT_EXTENDED = 0x20,
     OPEN_READ_BINARY = 1
 };
@@ -40,6 +41,17 @@ void host_say_checksums(const char *name, uint32_t first, uint32_t second)
     host_say("\n");
 }
 
+void host_say_number(uint32_t number)
+{
+    char digits[11] = {0};
+    uint32_t at = sizeof digits - 1;
+    do {
+        digits[--at] = (char)('0' + number % 10);
+        number /= 10;
+    } while (number > 0);
+    host_say(digits + at);
+}
+
 _Noreturn void host_exit(int status)
 {
     const uint32_t parameters[2] = {STOPPED_APPLICATION_EXIT, (uint32_t)status};
@@ -56,6 +68,14 @@ int host_open(const char *path)
     }
     const uint32_t parameters[3] = {(uint32_t)(uintptr_t)path, OPEN_READ_BINARY, length};
     return call(SYS_OPEN, parameters);
+}
+
+bool host_length(int handle, uint32_t *bytes)
+{
+    const uint32_t parameters[1] = {(uint32_t)handle};
+    const int length = call(SYS_FLEN, parameters);
+    *bytes = (uint32_t)length;
+    return length >= 0;
 }
 
 bool host_read(int handle, uint32_t offset, void *to, uint32_t length)
