@@ -51,7 +51,7 @@ static void copy_short(uint8_t *to, const uint8_t *from)
 }
 
 /* Move literals down to the output. They may overlap their copy, which never lies behind them. A
- * piece is no longer than the way they go. */
+ * piece is no longer than the way they go, which is never nothing: their token lies before them. */
 static void copy_literals(struct lm_lz4 *d, uint32_t length)
 {
     const uint8_t *from = d->buffer + d->in;

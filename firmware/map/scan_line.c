@@ -222,10 +222,7 @@ static inline bool next_run(struct walk *w, uint32_t k)
             return false;
         }
     }
-    if (k == w->east.end) {
-        if (k == w->cells) {
-            return false;
-        }
+    if (k == w->east.end) { /* and not behind the last cell, where the row ends, too */
         start_run(&w->east, k, w->cells);
     }
     return true;

@@ -1,6 +1,7 @@
 #include "lm/tile_fit.h"
 
 enum { ROWS_A_PART = 11 };
+_Static_assert(LM_TILE_POINTS % ROWS_A_PART == 0, "all parts are as long");
 
 int lm_tile_fit_begin(struct lm_tile_fit *f, struct lm_tile *tile, const struct lm_classes *own,
                       uint8_t own_lod, const struct lm_classes *view, uint8_t lod)
@@ -19,7 +20,7 @@ int lm_tile_fit_begin(struct lm_tile_fit *f, struct lm_tile *tile, const struct 
 int lm_tile_fit_run(struct lm_tile_fit *f)
 {
     struct lm_tile_point(*points)[LM_TILE_POINTS] = f->tile->points;
-    for (uint32_t i = 0; i < ROWS_A_PART && f->row < LM_TILE_POINTS; i++, f->row++) {
+    for (uint32_t i = 0; i < ROWS_A_PART; i++, f->row++) {
         for (uint32_t column = 0; column < LM_TILE_POINTS; column++) {
             uint16_t *cell = &points[f->row][column].cell;
             *cell = lm_cell_brightened(*cell, f->codes[*cell >> 4 & 15]);

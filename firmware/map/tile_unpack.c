@@ -6,6 +6,7 @@
 #include "lm/kernels_map.h"
 
 enum { HEAD_BYTES = offsetof(struct lm_tile, points) };
+_Static_assert(LM_TILE_POINTS % LM_TILE_UNPACK_ROWS == 0, "all parts are as long");
 
 int lm_tile_unpack_begin(struct lm_tile_unpack *u, struct lm_tile *tile, uint16_t size)
 {
@@ -40,7 +41,7 @@ int lm_tile_unpack_run(struct lm_tile_unpack *u)
         u->is_decoded = status == LM_OK;
         return u->is_decoded ? LM_BUSY : status;
     }
-    for (uint32_t i = 0; i < LM_TILE_UNPACK_ROWS && u->row < LM_TILE_POINTS; i++) {
+    for (uint32_t i = 0; i < LM_TILE_UNPACK_ROWS; i++) {
         put_right(u->tile, u->row++);
     }
     if (u->row < LM_TILE_POINTS) {

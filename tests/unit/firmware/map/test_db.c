@@ -1,6 +1,7 @@
 /* Nothing in the image is believed before it was checked. */
 #include "lm/db.h"
 #include "lm/image.h"
+#include "lm/sensor.h"
 
 #include "check.h"
 #include "fx/crc32c.h"
@@ -315,6 +316,97 @@ TEST(a_class_of_an_unknown_kind_or_facing_or_heights_that_fall_are_refused)
         tiny_image_seal(&image);
         assert_int_equal(open_bytes(&db, image.bytes, image.size),
                          what == 0 ? LM_OK : LM_ERR_CORRUPT);
+        tiny_image_free(&image);
+    }
+}
+
+/* A header whose numbers are all sound, with one that is not. */
+TEST(a_number_of_the_header_that_cannot_be_is_refused)
+{
+    for (int what = 0; what < 12; what++) {
+        struct tiny_image image;
+        struct lm_db db;
+        build(&image);
+        struct lm_image_header h;
+        memcpy(&h, image.bytes, sizeof h);
+        h.header_bytes += what == 1;
+        h.image_bytes += what == 2;
+        h.shift0 = what == 3 ? LM_DB_SHIFT_MIN - 1 : h.shift0;
+        h.lod_count = what == 4   ? 0
+                      : what == 5 ? LM_DB_LODS_MAX + 1
+                      : what == 6 ? (uint8_t)(LM_DB_SHIFT_MAX - h.shift0 + 2)
+                                  : h.lod_count;
+        h.shift0 = what == 5 ? LM_DB_SHIFT_MIN : h.shift0;
+        h.band_count = what == 7 ? 0 : what == 8 ? LM_DB_BANDS_MAX + 1 : h.band_count;
+        h.record_bytes += what == 9;
+        h.section_count = what == 10 ? LM_IMAGE_SECTIONS_MAX + 1 : h.section_count;
+        h.sensor = what == 11 ? LM_SENSORS : h.sensor;
+        h.crc = fx_crc32c(0, &h, sizeof h - sizeof h.crc);
+        memcpy(image.bytes, &h, sizeof h);
+        assert_int_equal(open_bytes(&db, image.bytes, image.size), what == 0    ? LM_OK
+                                                                   : what == 11 ? LM_ERR_VERSION
+                                                                                : LM_ERR_CORRUPT);
+        tiny_image_free(&image);
+    }
+}
+
+/* What the image says of a section of so many bytes, in a flash of 2^40. */
+static int open_long(uint32_t type, uint64_t bytes)
+{
+    const uint8_t content[64] = {0};
+    struct tiny_image image;
+    struct memory_flash flash;
+    struct lm_db db;
+    build(&image);
+    assert_int_equal(tiny_image_add_section(&image, type, content, sizeof content), 0);
+    struct lm_image_header h;
+    memcpy(&h, image.bytes, sizeof h);
+    h.sections[h.section_count - 1].bytes = bytes;
+    h.image_bytes = (uint64_t)1 << 40;
+    h.crc = fx_crc32c(0, &h, sizeof h - sizeof h.crc);
+    memcpy(image.bytes, &h, sizeof h);
+    memory_flash_open(&flash, image.bytes, (size_t)h.image_bytes);
+    const int status = lm_db_open(&db, &flash.port, POLLS);
+    tiny_image_free(&image);
+    return status;
+}
+
+TEST(a_section_longer_than_its_units_can_count_is_refused)
+{
+    const uint64_t units = UINT32_MAX;
+    assert_int_equal(open_long(LM_IMAGE_DETAIL, (units - 1) * LM_DB_PLACE_BYTES), LM_OK);
+    assert_int_equal(open_long(LM_IMAGE_DETAIL, units * LM_DB_PLACE_BYTES), LM_ERR_CORRUPT);
+    assert_int_equal(open_long(LM_IMAGE_RADAR, UINT32_MAX), LM_OK);
+    assert_int_equal(open_long(LM_IMAGE_RADAR, (uint64_t)UINT32_MAX + 1), LM_ERR_CORRUPT);
+}
+
+TEST(a_column_beyond_the_way_round_the_earth_has_no_entry)
+{
+    struct tiny_image image;
+    struct lm_db db;
+    build(&image);
+    assert_int_equal(open_bytes(&db, image.bytes, image.size), LM_OK);
+    const struct lm_band *b = &db.bands[0];
+    const uint32_t round = 1u << (32 - LM_TILE_CELLS_LOG2 - db.shift0);
+    assert_int_equal(lm_db_entry(&db, b->lod, b->row0, b->column0), b->entry0);
+    assert_int_equal(lm_db_entry(&db, b->lod, b->row0, b->column0 + round), -1);
+    tiny_image_free(&image);
+}
+
+TEST(a_flash_that_fails_at_the_head_of_an_optional_section_is_an_io_error)
+{
+    static const uint32_t types[] = {LM_IMAGE_TARGETS, LM_IMAGE_SIGNATURES, LM_IMAGE_GEOID,
+                                     LM_IMAGE_GEOID_PAGES};
+    const uint8_t content[sizeof(struct lm_geoid)] = {0};
+    for (size_t i = 0; i < sizeof types / sizeof *types; i++) {
+        struct tiny_image image;
+        struct memory_flash flash;
+        struct lm_db db;
+        build(&image);
+        assert_int_equal(tiny_image_add_section(&image, types[i], content, sizeof content), 0);
+        memory_flash_open(&flash, image.bytes, image.size);
+        flash.fail_read = 4; /* after header, classes and bands */
+        assert_int_equal(lm_db_open(&db, &flash.port, POLLS), LM_ERR_IO);
         tiny_image_free(&image);
     }
 }

@@ -80,8 +80,14 @@ TEST(numbers_out_of_their_range_are_refused)
     struct lm_geoid g = good;
     g.south = hs_bam(91);
     assert_false(lm_geoid_is_sound(&g));
-    g = plane(-90, 0, 27, 33, 33); /* once round the Earth */
+    g.south = hs_bam(-91);
     assert_false(lm_geoid_is_sound(&g));
+    g = plane(-90, 0, 27, 33, 2); /* once round the Earth */
+    assert_false(lm_geoid_is_sound(&g));
+    g = plane(-90, 0, 27, 2, 33);
+    assert_false(lm_geoid_is_sound(&g));
+    g = plane(-90, 0, 27, 2, 32);
+    assert_true(lm_geoid_is_sound(&g));
 }
 
 static void build(struct tiny_image *image)
@@ -326,10 +332,48 @@ static void shorten(struct pages *p)
     seal_page(&p->page[5]);
 }
 
+static void lengthen(struct pages *p)
+{
+    p->page[5].rows = LM_GEOID_NODES_MAX + 1;
+    seal_page(&p->page[5]);
+}
+
+static void narrow(struct pages *p)
+{
+    p->page[5].columns = 20;
+    seal_page(&p->page[5]);
+}
+
+static void flatten(struct pages *p)
+{
+    p->page[5].latitude_shift--;
+    seal_page(&p->page[5]);
+}
+
+static void squeeze(struct pages *p)
+{
+    p->page[5].longitude_shift--;
+    seal_page(&p->page[5]);
+}
+
+static void move_north(struct pages *p)
+{
+    p->page[5].south++;
+    seal_page(&p->page[5]);
+}
+
+static void move_east(struct pages *p)
+{
+    p->page[5].west++;
+    seal_page(&p->page[5]);
+}
+
 TEST(a_page_that_is_damaged_or_another_is_counted_once_and_not_used)
 {
-    void (*const spoils[])(struct pages *) = {exchange_two, flip_a_bit, shorten};
-    for (int i = 0; i < 3; i++) {
+    void (*const spoils[])(struct pages *) = {exchange_two, flip_a_bit, shorten,
+                                              lengthen,     narrow,     flatten,
+                                              squeeze,      move_north, move_east};
+    for (size_t i = 0; i < sizeof spoils / sizeof *spoils; i++) {
         struct paged *p = open_paged(spoils[i]);
         const struct lm_position on = {p->pages->page[4].south + 7,
                                        p->pages->page[4].west + (1u << SIDE_LOG2) + 9};
@@ -339,6 +383,64 @@ TEST(a_page_that_is_damaged_or_another_is_counted_once_and_not_used)
         assert_int_equal(p->reader.corrupt, 1);
         close_paged(p);
     }
+}
+
+static struct lm_position in_page_5(const struct paged *p)
+{
+    return (struct lm_position){p->pages->page[5].south + 7, p->pages->page[5].west + 9};
+}
+
+TEST(a_page_that_the_flash_does_not_give_is_not_damaged_and_not_used)
+{
+    struct paged *p = open_paged(NULL);
+    p->db.geoid_m_q6 = 48 * 64;
+    p->flash.fail_read = p->flash.reads + 1;
+    assert_true(fly_to(p, in_page_5(p)) == 48);
+    assert_int_equal(p->reader.corrupt, 0);
+    assert_int_equal(p->tiles.count.io_errors, 1);
+    close_paged(p);
+}
+
+TEST(a_page_waits_while_another_part_reads_the_flash)
+{
+    struct paged *p = open_paged(NULL);
+    uint8_t header[64];
+    struct lm_flash_request other = {.destination = header, .length = sizeof header};
+    p->db.geoid_m_q6 = 48 * 64;
+    assert_true(lm_tile_cache_read(&p->tiles, &other));
+    lm_geoid_reader_service(&p->reader, &p->tiles, &p->db, in_page_5(p));
+    assert_int_equal(p->reader.reading, 0);
+    assert_true(fly_to(p, in_page_5(p)) != 48);
+    assert_int_equal(other.status, LM_OK);
+    close_paged(p);
+}
+
+TEST(a_page_of_another_image_is_not_used)
+{
+    struct paged *p = open_paged(NULL);
+    p->db.geoid_m_q6 = 48 * 64;
+    assert_true(fly_to(p, in_page_5(p)) != 48);
+    const struct lm_db other = p->db;
+    assert_int_equal(lm_geoid_reader_height_m_q6(&p->reader, &other, in_page_5(p)), 48 * 64);
+    close_paged(p);
+}
+
+TEST(an_image_with_a_head_of_pages_that_cannot_be_is_refused)
+{
+    struct tiny_image tiny;
+    struct memory_flash flash;
+    struct lm_db db;
+    struct pages *pages = make_pages();
+    pages->head.rows++;
+    seal_head(&pages->head);
+    size_t size;
+    build(&tiny);
+    uint8_t *image = with_section_of(LM_IMAGE_GEOID_PAGES, &tiny, pages, sizeof *pages, &size);
+    memory_flash_open(&flash, image, size);
+    assert_int_equal(lm_db_open(&db, &flash.port, POLLS), LM_ERR_CORRUPT);
+    free(image);
+    free(pages);
+    tiny_image_free(&tiny);
 }
 
 TEST(a_head_of_pages_that_cannot_be_is_refused)

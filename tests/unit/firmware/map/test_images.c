@@ -6,6 +6,7 @@
 #include "lm/scan_line.h"
 #include "lm/tile_cache.h"
 #include "memory_flash.h"
+#include "packed_tile.h"
 #include "tiny_image.h"
 
 #include <math.h>
@@ -125,11 +126,14 @@ static void open_map(struct fixture *f, struct map *m, uint32_t first, uint32_t 
         LM_OK);
 }
 
-static struct fixture *open_fixture_of(bool is_town)
+static struct fixture *open_fixture_of(bool is_town, bool is_packed)
 {
     struct fixture *f = calloc(1, sizeof *f);
     build(&f->theatre_image, THEATRE_SHIFT, 3, true, is_town);
     build(&f->world_image, WORLD_SHIFT, 4, false, is_town);
+    if (is_packed) {
+        tiny_image_pack(&f->theatre_image);
+    }
     const struct tiny_image images[2] = {f->theatre_image, f->world_image};
     size_t size;
     f->bytes = tiny_images_join(images, 2, f->parts, &size);
@@ -142,7 +146,7 @@ static struct fixture *open_fixture_of(bool is_town)
 
 static struct fixture *open_fixture(void)
 {
-    return open_fixture_of(false);
+    return open_fixture_of(false, false);
 }
 
 static void close_fixture(struct fixture *f)
@@ -305,7 +309,7 @@ static double return_db(struct map *m, uint8_t lod, struct lm_position at)
 /* A quarter of a decibel is lost where a tile is fitted, and another where it fills a gap. */
 TEST(a_town_returns_what_its_own_image_says_at_every_level)
 {
-    struct fixture *f = open_fixture_of(true);
+    struct fixture *f = open_fixture_of(true, false);
     double worst_db = 0;
     uint32_t of_world = 0;
     srand(5);
@@ -390,6 +394,218 @@ TEST(an_image_that_is_unmounted_is_not_read_and_has_no_tile_any_more)
     close_fixture(f);
 }
 
+/* What a cache is in the middle of. */
+enum { READING = 1, UNPACKING = 2, FITTING = 4, FILLING = 8, REFUSED = 16 };
+
+static uint32_t work_of(const struct lm_tile_cache *c)
+{
+    return (c->reading_slot != LM_SLOT_NONE ? READING : 0u) | (c->is_unpacking ? UNPACKING : 0u) |
+           (c->is_fitting ? FITTING : 0u) | (c->is_filling ? FILLING : 0u) |
+           (c->is_refused ? REFUSED : 0u);
+}
+
+/* The theatre goes after so many steps of reading a tile of it. Returns what was under way. */
+static uint32_t take_theatre_away(struct fixture *f, struct lm_position at, uint32_t steps)
+{
+    struct lm_tile_cache *tiles = &f->both.tiles;
+    lm_tile_cache_mount(tiles, f->both.images, 2);
+    (void)lm_scan_cell(tiles, 0, at);
+    for (uint32_t i = 0; i < steps; i++) {
+        lm_tile_cache_service(tiles, 0, 1);
+    }
+    const uint32_t work = work_of(tiles);
+    lm_tile_cache_mount(tiles, f->both.images + 1, 1);
+    f->both.flash.port.size_bytes = f->parts[1].offset + f->parts[1].bytes;
+    for (uint32_t i = 0; i < 2 && !lm_tile_cache_is_drained(tiles); i++) {
+        lm_tile_cache_service(tiles, 0, 1);
+    }
+    assert_true(lm_tile_cache_is_drained(tiles) && lm_tile_cache_is_idle(tiles));
+    assert_int_equal(work_of(tiles), 0);
+    return work;
+}
+
+TEST(an_image_may_go_in_the_middle_of_whatever_is_done_with_its_tile)
+{
+    struct fixture *f = open_fixture_of(true, true);
+    const struct lm_position at = place(100);
+    const uint16_t wanted = cell_of(&f->world, 0, at);
+    uint32_t seen = 0;
+    for (uint32_t steps = 0; steps < 200; steps++) {
+        if (steps == 1) { /* the medium goes first */
+            f->both.flash.port.size_bytes = 0;
+            seen |= take_theatre_away(f, at, steps);
+        }
+        seen |= take_theatre_away(f, at, steps);
+        assert_int_equal(cell_of(&f->both, WORLD_LOD, at), wanted);
+    }
+    assert_int_equal(seen, READING | UNPACKING | FITTING | FILLING | REFUSED);
+    close_fixture(f);
+}
+
+/* Images of one class each, all with the same cells. The first has no data in the east. */
+enum { LAYERS_MOST = LM_IMAGES_MAX, LAYER_TILES = 2, LAYER_LODS = 3, ALL_LODS = 7 };
+
+struct layer {
+    double latitude_deg;
+    uint8_t class_index;
+    uint8_t left_out; /* a bit for each LOD */
+    bool has_gap;
+};
+
+struct layers {
+    struct map map;
+    struct lm_flash_part parts[LAYERS_MOST];
+    uint8_t *bytes;
+};
+
+static struct tiny_cell layer_cell(void *ctx, const struct tiny_place *p)
+{
+    const struct layer *l = ctx;
+    return (struct tiny_cell){-20, l->has_gap && p->east_m > 0 ? TINY_NONE : l->class_index, 0};
+}
+
+static bool is_left_out(void *ctx, uint8_t level, uint32_t row, uint32_t column)
+{
+    const struct layer *l = ctx;
+    (void)row;
+    (void)column;
+    return (l->left_out >> level & 1) != 0;
+}
+
+static void open_layers(struct layers *f, struct layer *layer, uint32_t count)
+{
+    struct tiny_image images[LAYERS_MOST];
+    size_t size;
+    for (uint32_t i = 0; i < count; i++) {
+        struct tiny_spec spec = tiny_spec_at(layer[i].latitude_deg, 11);
+        spec.rows = spec.columns = LAYER_TILES;
+        spec.level_count = LAYER_LODS;
+        spec.cell = layer_cell;
+        spec.leave_out = is_left_out;
+        spec.ctx = &layer[i];
+        assert_int_equal(tiny_image_build(&images[i], &spec), 0);
+    }
+    f->bytes = tiny_images_join(images, count, f->parts, &size);
+    assert_non_null(f->bytes);
+    struct map *m = &f->map;
+    memory_flash_open(&m->flash, f->bytes, size);
+    m->pool = malloc(SLOTS * sizeof(struct lm_tile));
+    assert_non_null(m->pool);
+    for (uint32_t i = 0; i < count; i++) {
+        assert_int_equal(lm_db_open_part(&m->images[i], &m->flash.port, &f->parts[i], POLLS),
+                         LM_OK);
+        tiny_image_free(&images[i]);
+    }
+    m->db = m->images[0];
+    lm_images_view(&m->db, m->images, count);
+    assert_int_equal(lm_tile_cache_init_over(&m->tiles, &m->db, m->images, count, m->pool,
+                                             SLOTS * sizeof(struct lm_tile), POLLS),
+                     LM_OK);
+}
+
+static void close_layers(struct layers *f)
+{
+    free(f->map.pool);
+    free(f->bytes);
+}
+
+/* The class at an LOD some way west or east of the middle of a layer; asked for until the LOD
+ * itself has come. TINY_NONE where no image has data. */
+static uint32_t class_at(struct layers *f, uint8_t lod, double latitude_deg, double east_m)
+{
+    const struct lm_position at = {hs_bam(latitude_deg + 0.0003), hs_bam(11 + east_m / 77500)};
+    return cell_of(&f->map, lod, at) >> 4 & 15;
+}
+
+/* Classes at LOD 0 in the west and, where the first has no data, in the east. */
+static void check_layers(struct layer *layer, uint32_t count, uint32_t west, uint32_t east)
+{
+    static struct layers f;
+    open_layers(&f, layer, count);
+    assert_int_equal(class_at(&f, 0, 46, -100), west);
+    assert_int_equal(class_at(&f, 0, 46, 100), east);
+    assert_int_equal(f.map.tiles.count.io_errors + f.map.tiles.count.corrupt, 0);
+    close_layers(&f);
+}
+
+TEST(a_tile_that_one_image_leaves_out_is_that_of_the_next_one)
+{
+    struct layer some[] = {{46, TINY_TREES, 1, false}, {46, TINY_WATER, 0, false}};
+    check_layers(some, 2, TINY_WATER, TINY_WATER);
+    struct layer all[] = {
+        {46, TINY_TREES, ALL_LODS, false}, {46, TINY_WATER, 1, false}, {46, TINY_SOIL, 0, false}};
+    check_layers(all, 3, TINY_SOIL, TINY_SOIL);
+    struct layer both[] = {{46, TINY_TREES, 1, false}, {46, TINY_WATER, 1, false}};
+    check_layers(both, 2, TINY_TREES, TINY_TREES); /* the parent of the first */
+}
+
+TEST(a_gap_is_filled_by_the_first_image_behind_that_has_any_tile_there)
+{
+    struct layer elsewhere[] = {
+        {46, TINY_TREES, 0, true}, {47, TINY_WATER, 0, false}, {46, TINY_SOIL, 0, false}};
+    check_layers(elsewhere, 3, TINY_TREES, TINY_SOIL);
+    struct layer coarser[] = {
+        {46, TINY_TREES, 0, true}, {46, TINY_WATER, 3, false}, {46, TINY_SOIL, 0, false}};
+    check_layers(coarser, 3, TINY_TREES, TINY_WATER);
+    struct layer empty[] = {
+        {46, TINY_TREES, 0, true}, {46, TINY_WATER, ALL_LODS, false}, {46, TINY_SOIL, 0, false}};
+    check_layers(empty, 3, TINY_TREES, TINY_SOIL);
+}
+
+TEST(a_gap_that_no_image_behind_can_fill_stays_one)
+{
+    struct layer elsewhere[] = {{46, TINY_TREES, 0, true}, {47, TINY_WATER, 0, false}};
+    check_layers(elsewhere, 2, TINY_TREES, TINY_NONE);
+    struct layer empty[] = {{46, TINY_TREES, 0, true}, {46, TINY_WATER, ALL_LODS, false}};
+    check_layers(empty, 2, TINY_TREES, TINY_NONE);
+}
+
+TEST(a_tile_that_cannot_be_read_is_that_of_the_next_image_with_cells_as_fine)
+{
+    static struct layers f;
+    struct layer layer[] = {{46, TINY_TREES, 0, false}, {46, TINY_WATER, 0, false}};
+    open_layers(&f, layer, 2);
+    broken_from = (uintptr_t)f.bytes;
+    broken_to = broken_from + f.parts[0].bytes;
+    f.map.flash.fetch = fetch_unless_broken;
+    assert_int_equal(class_at(&f, 0, 46, 100), TINY_WATER);
+    assert_int_equal(f.map.tiles.count.io_errors, 1);
+    close_layers(&f);
+}
+
+TEST(as_many_images_as_there_may_be_answer_each_at_its_place)
+{
+    static struct layers f;
+    struct layer layer[LAYERS_MOST];
+    for (uint32_t i = 0; i < LAYERS_MOST; i++) {
+        layer[i] = (struct layer){40 + 2 * i, i % 2 ? TINY_TREES : TINY_SOIL, 0, false};
+    }
+    open_layers(&f, layer, LAYERS_MOST);
+    for (uint32_t pass = 0; pass < 2; pass++) { /* at first all wait, each for its image's tile */
+        for (uint32_t i = 0; i < LAYERS_MOST; i++) {
+            const struct lm_position at = {hs_bam(40.0003 + 2 * i), hs_bam(11.001)};
+            const uint16_t cell = lm_scan_cell(&f.map.tiles, 0, at);
+            assert_int_equal(cell >> 4 & 15, layer[i].class_index);
+        }
+        assert_int_equal(lm_tile_cache_waiting(&f.map.tiles), pass == 0 ? LAYERS_MOST : 0);
+        serve(&f.map);
+    }
+    assert_int_equal(f.map.tiles.count.misses, LAYERS_MOST);
+    assert_int_equal(class_at(&f, 0, 39, 100), TINY_NONE);
+    assert_int_equal(f.map.tiles.count.off_map, 2);
+    close_layers(&f);
+}
+
+TEST(a_pool_without_room_for_filling_is_refused)
+{
+    struct fixture *f = open_fixture();
+    struct map *m = &f->both;
+    assert_int_equal(lm_tile_cache_init_over(&m->tiles, &m->db, m->images, 2, m->pool,
+                                             sizeof(struct lm_tile) - 1, POLLS),
+                     LM_ERR_NO_MEMORY);
+    close_fixture(f);
+}
+
 TEST(images_of_other_classes_or_another_band_are_refused)
 {
     struct fixture *f = open_fixture();
@@ -404,8 +620,23 @@ TEST(images_of_other_classes_or_another_band_are_refused)
     world->classes.entry[TINY_WATER].kind ^= 1;
     assert_int_equal(lm_images_judge(&f->theatre.db, world), LM_ERR_TABLE);
     world->classes.entry[TINY_WATER].kind ^= 1;
+    world->classes.entry[TINY_WATER].name[0] ^= 1;
+    assert_int_equal(lm_images_judge(&f->theatre.db, world), LM_ERR_TABLE);
+    world->classes.entry[TINY_WATER].name[0] ^= 1;
+    world->classes.entry[TINY_WATER].facing ^= 1;
+    assert_int_equal(lm_images_judge(&f->theatre.db, world), LM_ERR_TABLE);
+    world->classes.entry[TINY_WATER].facing ^= 1;
+    world->classes.entry[TINY_WATER].flags ^= 1;
+    assert_int_equal(lm_images_judge(&f->theatre.db, world), LM_ERR_TABLE);
+    world->classes.entry[TINY_WATER].flags ^= 1;
     world->radar_bytes = 628;
     assert_int_equal(lm_images_judge(&f->theatre.db, world), LM_ERR_TABLE);
+    f->theatre.db.radar_bytes = 628;
+    assert_int_equal(lm_images_judge(&f->theatre.db, world), LM_OK);
+    world->radar_crc ^= 1;
+    assert_int_equal(lm_images_judge(&f->theatre.db, world), LM_ERR_TABLE);
+    world->radar_crc ^= 1;
+    f->theatre.db.radar_bytes = 0;
     world->radar_bytes = 0;
     world->sensor ^= 1;
     assert_int_equal(lm_images_judge(&f->theatre.db, world), LM_ERR_SENSOR);

@@ -425,6 +425,50 @@ TEST(beyond_the_map_there_is_no_data_at_sea_level)
     tiny_map_close(&w.map);
 }
 
+/* Two tiles 15 rows and 31 columns apart are in one chain of the cache: the one read first is not
+ * found at its head. */
+TEST(a_tile_that_is_not_the_first_of_its_chain_is_still_the_tile_itself)
+{
+    static struct world w;
+    struct tiny_spec spec = tiny_spec_at(46, 11);
+    spec.rows = 16;
+    spec.columns = 32;
+    open_world_with(&w, spec);
+    const uint32_t side_log2 = w.map.db.shift0 + LM_TILE_CELLS_LOG2;
+    const struct lm_band *b = &w.map.db.bands[0];
+    assert_int_equal(b->lod, 0);
+    for (uint32_t i = 0; i < 2; i++) {
+        lm_tile_cache_want(&w.map.tiles, 0, b->row0 + 15 * i, b->column0 + 31 * i);
+        tiny_map_read_tiles(&w.map);
+    }
+    for (uint32_t i = 0; i < 2; i++) {
+        const uint32_t row = b->row0 + 15 * i, column = b->column0 + 31 * i;
+        const struct lm_ground_path p = {
+            .latitude = (uint64_t)((row << side_log2) + (1u << side_log2 >> 1) - FX_BAM_90) << 32,
+            .longitude = (uint64_t)((column << side_log2) + (1u << side_log2 >> 1)) << 32};
+        assert_int_equal(lm_tile_cache_peek(&w.map.tiles, 0, row, column) != NULL, i);
+        lm_scan_line_run(&w.line, &w.map.tiles, 0, NULL, &p, 1);
+        assert_int_equal(w.line.cell[0] & 0xFFFF,
+                         find_tile(&w, 0, row, column)->points[33][33].cell);
+        assert_int_equal(w.line.coarse_cells, 0);
+        assert_int_equal(w.line.coarsest_lod, 0);
+    }
+    tiny_map_close(&w.map);
+}
+
+TEST(crowns_are_drawn_where_the_picture_shows_them_and_the_map_does_not)
+{
+    struct lm_db db = {.shift0 = 9, .lod_count = 1, .classes = *tiny_classes()};
+    struct lm_scan_blend blend = {.is_on = false};
+    lm_scan_blend_set(&blend, &db, 1000);
+    assert_int_equal(blend.crowned, 1 << TINY_TREES);
+    lm_scan_blend_set(&blend, &db, 3500);
+    assert_int_equal(blend.crowned, 0);
+    db.shift0 = 8; /* cells of 2.4 m */
+    lm_scan_blend_set(&blend, &db, 1000);
+    assert_int_equal(blend.crowned, 0);
+}
+
 TEST(one_elevation_is_that_of_a_line)
 {
     static struct world w;

@@ -9,6 +9,7 @@
 #include "memory_flash.h"
 #include "tiny_country.h"
 
+#include <stdbool.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -196,6 +197,83 @@ TEST_WITH(an_image_of_a_length_that_reaches_into_the_records_is_not_flown, erase
     assert_int_equal(verdict_of_length(record_at[0]), LM_SLOT_FLOWN);
     assert_int_equal(verdict_of_length(record_at[0] + 1), LM_SLOT_DAMAGED);
     assert_int_equal(slots.port.size_bytes, 0);
+}
+
+/* An image in slot 0 with a section more, of which the firmware needs nothing. */
+static enum lm_slot_verdict verdict_of_section(uint64_t offset, uint64_t bytes, bool is_sealed)
+{
+    struct lm_image_header header;
+    fill(0, 0, 1);
+    memcpy(&header, images[0].bytes, sizeof header);
+    header.sections[header.section_count++] =
+        (struct lm_image_section){.type = LM_IMAGE_SEAL,
+                                  .crc = is_sealed ? fx_crc32c(0, slot_at(0) + offset, bytes) : 1,
+                                  .offset = offset,
+                                  .bytes = bytes};
+    header.crc = fx_crc32c(0, &header, sizeof header - sizeof header.crc);
+    memcpy(slot_at(0), &header, sizeof header);
+    struct lm_slot_record r = record_of(0, LM_SLOT_WHOLE, 2, 1);
+    r.image_crc = header.crc;
+    lm_slot_seal(&r);
+    memcpy(slot_at(0) + record_at[0], &r, sizeof r);
+    memcpy(slot_at(0) + record_at[1], &r, sizeof r);
+    look();
+    return slots.slot[0].verdict;
+}
+
+TEST_WITH(a_section_that_leaves_the_image_makes_the_slot_a_damaged_one, erase, NULL)
+{
+    const uint64_t size = images[0].size;
+    assert_int_equal(verdict_of_section(size - 64, 64, true), LM_SLOT_FLOWN);
+    assert_int_equal(verdict_of_section(size - 64, 64, false), LM_SLOT_DAMAGED);
+    assert_int_equal(verdict_of_section(size - 64, 65, false), LM_SLOT_DAMAGED);
+    assert_int_equal(verdict_of_section(size, 0, true), LM_SLOT_FLOWN);
+    assert_int_equal(verdict_of_section(size + 1, 0, false), LM_SLOT_DAMAGED);
+    assert_int_equal(verdict_of_section(UINT64_MAX - 63, 64, false), LM_SLOT_DAMAGED);
+}
+
+TEST_WITH(the_checksum_of_a_section_that_takes_too_long_is_not_asked_for, erase, NULL)
+{
+    assert_int_equal(verdict_of_section(0, LM_SLOT_CHECKED_BYTES + 1, false), LM_SLOT_FLOWN);
+}
+
+/* A header that says something else when it is read once more, with the same checksum. */
+static struct {
+    uint32_t reads, section_count;
+    uint64_t image_bytes;
+} second_header;
+
+static bool fetch_another_header(void *to, const uint8_t *from, uint32_t length)
+{
+    memcpy(to, from, length);
+    if (from == slot_at(0) && second_header.reads++ == 1) {
+        struct lm_image_header *h = to;
+        h->section_count =
+            second_header.section_count ? second_header.section_count : h->section_count;
+        h->image_bytes += second_header.image_bytes;
+    }
+    return true;
+}
+
+static enum lm_slot_verdict verdict_of_two_headers(uint32_t section_count, uint64_t more_bytes)
+{
+    memory_flash_open(&flash, flash_bytes, FLASH_BYTES);
+    flash.fetch = fetch_another_header;
+    second_header.reads = 0;
+    second_header.section_count = section_count;
+    second_header.image_bytes = more_bytes;
+    lm_slot_flash_open(&slots, &flash.port, &db, scratch, sizeof scratch, POLLS);
+    assert_int_equal(second_header.reads, 2);
+    return slots.slot[0].verdict;
+}
+
+TEST_WITH(a_flash_whose_header_changes_leads_nowhere, erase, NULL)
+{
+    fill(0, 0, 1);
+    assert_int_equal(verdict_of_two_headers(0, 0), LM_SLOT_FLOWN);
+    assert_int_equal(verdict_of_two_headers(0, 64), LM_SLOT_DAMAGED);
+    /* Behind the last section of a header nothing is taken for one. */
+    assert_int_equal(verdict_of_two_headers(UINT32_MAX, 0), LM_SLOT_FLOWN);
 }
 
 TEST_WITH(a_record_without_the_number_of_a_load_is_damaged, erase, NULL)

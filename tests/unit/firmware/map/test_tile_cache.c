@@ -34,16 +34,22 @@ static int open_cache(struct fixture *f)
     return lm_tile_cache_init(&f->cache, &f->db, f->pool, SLOTS * sizeof(struct lm_tile), POLLS);
 }
 
-static struct fixture *make_fixture(void)
+static struct fixture *make_fixture_of(uint8_t rows, uint8_t columns)
 {
     struct fixture *f = calloc(1, sizeof *f);
     struct tiny_spec spec = tiny_spec_at(46, 11);
     spec.cell = soil;
-    spec.rows = spec.columns = SIDE;
+    spec.rows = rows;
+    spec.columns = columns;
     assert_int_equal(tiny_image_build(&f->image, &spec), 0);
     memory_flash_open(&f->flash, f->image.bytes, f->image.size);
     assert_int_equal(open_cache(f), LM_OK);
     return f;
+}
+
+static struct fixture *make_fixture(void)
+{
+    return make_fixture_of(SIDE, SIDE);
 }
 
 static void free_fixture(struct fixture *f)
@@ -149,6 +155,27 @@ TEST(every_read_that_fails_is_counted_and_answered_by_an_ancestor)
         assert_int_equal(get(f, 2, 2)->lod, 0);
         free_fixture(f);
     }
+}
+
+TEST(a_read_that_the_flash_refuses_is_a_failed_one)
+{
+    struct fixture *f = make_fixture();
+    f->flash.port.size_bytes = 0; /* as that of a medium that was taken out */
+    const uint32_t reads = f->flash.reads;
+    get(f, 2, 2);
+    serve(f, 1);
+    assert_int_equal(f->flash.reads, reads);
+    assert_int_equal(f->cache.count.io_errors, 1);
+    assert_true(get(f, 2, 2)->lod > 0);
+    f->flash.port.size_bytes = f->image.size;
+    serve(f, 2);
+    assert_true(get(f, 2, 2)->lod > 0);
+    serve(f, 2 + LM_TILE_RETRY_US);
+    get(f, 2, 2);
+    serve(f, 3 + LM_TILE_RETRY_US);
+    assert_int_equal(get(f, 2, 2)->lod, 0);
+    assert_int_equal(f->cache.count.io_errors, 1);
+    free_fixture(f);
 }
 
 TEST(any_flipped_bit_in_a_record_or_entry_is_caught)
@@ -309,6 +336,36 @@ TEST(tiles_of_a_neighbourhood_have_a_chain_each)
     }
 }
 
+static bool is_resident(const struct fixture *f, uint32_t row, uint32_t column)
+{
+    const struct lm_band *b = finest_band(f);
+    return lm_tile_cache_find(&f->cache, 0, b->row0 + row, b->column0 + column) != NULL;
+}
+
+TEST(of_two_tiles_in_one_chain_the_older_leaves_and_the_newer_stays)
+{
+    enum { ROW = 15, COLUMN = 31 }; /* how far the second is from the first */
+    struct fixture *f = make_fixture_of(ROW + 1, COLUMN + 1);
+    const struct lm_band *b = finest_band(f);
+    assert_int_equal(lm_tile_chain(b->row0, b->column0),
+                     lm_tile_chain(b->row0 + ROW, b->column0 + COLUMN));
+    get(f, 0, 0);
+    serve(f, 0);
+    for (uint32_t i = 1; is_resident(f, 0, 0); i++) {
+        assert_true(i < COLUMN * ROW);
+        get(f, ROW, COLUMN);
+        get(f, i / COLUMN, i % COLUMN);
+        serve(f, 0);
+        assert_true(is_resident(f, ROW, COLUMN));
+    }
+    for (uint32_t i = 0; i < 2; i++) { /* and the first may come back */
+        get(f, 0, 0);
+        serve(f, 0);
+        assert_true(is_resident(f, 0, 0) && is_resident(f, ROW, COLUMN));
+    }
+    free_fixture(f);
+}
+
 TEST(off_the_map_there_is_nothing)
 {
     struct fixture *f = make_fixture();
@@ -325,6 +382,23 @@ TEST(a_pool_of_a_few_tiles_is_refused)
     assert_int_equal(lm_tile_cache_init(cache, &f->db, f->pool, 16 * sizeof(struct lm_tile), POLLS),
                      LM_ERR_NO_MEMORY);
     free(cache);
+    free_fixture(f);
+}
+
+TEST(of_a_large_pool_as_many_tiles_are_used_as_there_are_slots)
+{
+    struct fixture *f = make_fixture();
+    const size_t bytes = (LM_TILE_SLOTS_MAX + 3) * sizeof(struct lm_tile);
+    free(f->pool);
+    f->pool = malloc(bytes);
+    assert_non_null(f->pool);
+    assert_int_equal(lm_tile_cache_init(&f->cache, &f->db, f->pool, bytes, POLLS), LM_OK);
+    assert_int_equal(f->cache.slot_count, LM_TILE_SLOTS_MAX);
+    for (uint32_t i = 0; i < SIDE; i++) {
+        get(f, i, i);
+        serve(f, 0);
+        assert_int_equal(get(f, i, i)->lod, 0);
+    }
     free_fixture(f);
 }
 
@@ -447,7 +521,10 @@ TEST(a_flash_request_is_read_between_two_tiles_and_one_at_a_time)
     assert_true(polls < 8); /* before the other tiles */
     assert_int_equal(request.status, LM_OK);
     assert_memory_equal(header, f->image.bytes, sizeof header);
+    serve(f, 0);
+    assert_true(lm_tile_cache_is_idle(&f->cache) && lm_tile_cache_is_drained(&f->cache));
     assert_true(lm_tile_cache_read(&f->cache, &second));
+    assert_false(lm_tile_cache_is_idle(&f->cache) || lm_tile_cache_is_drained(&f->cache));
     f->flash.fail_read = f->flash.reads + 1;
     serve(f, 0);
     assert_int_equal(second.status, LM_ERR_IO);

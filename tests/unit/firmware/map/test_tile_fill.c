@@ -20,8 +20,15 @@ struct fixture {
     struct lm_tile_fill fill;
 };
 
+static void fill(struct fixture *f, uint32_t generations)
+{
+    lm_tile_fill_begin(&f->fill, &f->tile, &f->source, generations, &f->classes);
+    while (lm_tile_fill_run(&f->fill) == LM_BUSY) {
+    }
+}
+
 /* The tile has data in its west alone. Woods, fields and lakes of the source change slowly. */
-static struct fixture *make(uint32_t generations)
+static struct fixture *prepare(uint32_t generations)
 {
     struct fixture *f = calloc(1, sizeof *f);
     f->classes = *tiny_classes();
@@ -47,9 +54,13 @@ static struct fixture *make(uint32_t generations)
                 (uint16_t)(c < GAP_COLUMN ? 90 << 8 | TINY_ASPHALT << 4 : no_data);
         }
     }
-    lm_tile_fill_begin(&f->fill, &f->tile, &f->source, generations, &f->classes);
-    while (lm_tile_fill_run(&f->fill) == LM_BUSY) {
-    }
+    return f;
+}
+
+static struct fixture *make(uint32_t generations)
+{
+    struct fixture *f = prepare(generations);
+    fill(f, generations);
     return f;
 }
 
@@ -151,6 +162,80 @@ TEST(beside_the_source_its_border_answers)
     for (int i = -1; i <= LM_TILE_CELLS; i++) {
         const int in = (ROW % 2 * LM_TILE_CELLS + i) >> 1;
         assert_int_equal(t->points[i + 1][LM_TILE_CELLS + 1].cell, s->points[in + 1][65].cell);
+    }
+    free(f);
+}
+
+/* Bushes of 50 to 100 m are no woods: the nearer of two codes is told, the highest one, too. */
+TEST(what_is_no_wood_has_the_nearer_code_of_its_height)
+{
+    struct fixture *f = prepare(2);
+    uint32_t highest = 0, others = 0;
+    for (uint32_t r = 0; r < LM_TILE_POINTS; r++) {
+        for (uint32_t c = 0; c < LM_TILE_POINTS; c++) {
+            f->source.points[r][c].cell =
+                (uint16_t)(100 << 8 | TINY_SOIL << 4 | (12 + (r / 3 + c / 4) % 4));
+        }
+    }
+    fill(f, 2);
+    for (int row = 0; row < LM_TILE_CELLS; row++) {
+        for (int column = GAP_COLUMN; column < LM_TILE_CELLS; column++) {
+            const struct ref_bin wanted =
+                blended(f, in_source(ROW, 2, row), in_source(COLUMN, 2, column), false);
+            const uint32_t code = f->tile.points[row + 1][column + 1].cell & 15;
+            const uint16_t *dm = f->classes.height_dm;
+            const uint32_t step_dm = code == 15 ? dm[15] - dm[14] : dm[code + 1] - dm[code];
+            assert_true(fabs(dm[code] - 10 * wanted.height_m) <= step_dm / 2.0 + 3);
+            highest += code == 15;
+            others += code < 15;
+        }
+    }
+    assert_true(highest > 100 && others > 100);
+    free(f);
+}
+
+static int32_t post_m_q6(const struct lm_tile *t, uint32_t row, uint32_t column)
+{
+    return t->base_m_q6 + (t->points[row][column].post << t->post_shift);
+}
+
+TEST(a_gap_lies_between_the_posts_of_the_source_however_coarse_that_is)
+{
+    for (uint32_t generations = 0; generations < LM_DB_LODS_MAX; generations++) {
+        struct fixture *f = prepare(generations);
+        for (uint32_t r = 0; r < LM_TILE_POINTS; r++) {
+            for (uint32_t c = 0; c < LM_TILE_POINTS; c++) {
+                f->source.points[r][c].post = (uint16_t)(50 * r + 700 * c);
+            }
+        }
+        fill(f, generations);
+        const double half = 0.5 / (1u << generations); /* posts stand at corners of cells */
+        for (int row = 0; row < LM_TILE_CELLS; row++) {
+            for (int column = GAP_COLUMN + 1; column < LM_TILE_CELLS; column++) {
+                const double wanted_q6 =
+                    4 * (50 * (in_source(ROW, generations, row) - half + 1) +
+                         700 * (in_source(COLUMN, generations, column) - half + 1));
+                const int32_t m_q6 = post_m_q6(&f->tile, (uint32_t)row + 1, (uint32_t)column + 1);
+                /* Of the way between two posts 1/256 is told, and a post to its step. */
+                assert_true(fabs(m_q6 - wanted_q6) <=
+                            4 * 750 / 256.0 + 4 + (1 << f->tile.post_shift));
+            }
+        }
+        free(f);
+    }
+}
+
+TEST(what_rises_further_above_the_tile_than_a_record_can_tell_is_cut_off_there)
+{
+    struct fixture *f = prepare(1);
+    const int32_t deep_m_q6 = -(1 << 20);
+    f->tile.base_m_q6 = deep_m_q6;
+    f->source.base_m_q6 = 1 << 20;
+    fill(f, 1);
+    assert_int_equal(f->tile.post_shift, LM_TILE_POST_SHIFT_MAX);
+    for (uint32_t r = 1; r <= LM_TILE_CELLS; r++) {
+        assert_int_equal(post_m_q6(&f->tile, r, 4), deep_m_q6);
+        assert_int_equal(f->tile.points[r][LM_TILE_CELLS].post, UINT16_MAX);
     }
     free(f);
 }
