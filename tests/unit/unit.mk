@@ -16,6 +16,8 @@ UNIT_ALSO_SANITIZED := $(addprefix firmware/targets/test_,target_line target_pat
 ifneq ($(findstring coverage,$(O)),) # only the plain objects count what they run
 UNIT_SANITIZED :=
 UNIT_ALSO_SANITIZED :=
+# Tests count, too, what they run of headers of both layers.
+$(O)/tests/unit/fixed/%.o $(O)/tests/unit/firmware/%.o: CFLAGS_host += $(OPT_core)
 endif
 
 LIB_host_support := $(O)/tests/unit/host-sim/libsupport.a
