@@ -53,7 +53,7 @@ static enum lm_bus_outcome read_number(const struct lm_bus_packing *p, uint64_t 
 }
 
 /* Resolution of a number, in units of the field: that of one count of the integer, or of the last
- * place of a single float. The product, at most 2^30 * 2^63, is clamped to 2^32. */
+ * place of a single float. The product, at most 2^30 * 2^8, is clamped to 2^32. */
 static uint32_t step_of(const struct lm_bus_packing *p, uint64_t raw)
 {
     int32_t up = -(int32_t)p->shift;
@@ -63,8 +63,9 @@ static uint32_t step_of(const struct lm_bus_packing *p, uint64_t raw)
         }
         up += (int32_t)(raw >> 23 & 0xff) - 150 + p->frac_bits;
     }
-    if (up >= 0) {
-        return up < 2 ? (uint32_t)p->multiplier << up : UINT32_MAX;
+    if (up >= 0) { /* at most 8, the number being below 2^32 */
+        const uint64_t step = (uint64_t)p->multiplier << up;
+        return step < UINT32_MAX ? (uint32_t)step : UINT32_MAX;
     }
     return up > -31 ? (uint32_t)p->multiplier >> -up : 0;
 }

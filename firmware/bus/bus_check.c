@@ -45,7 +45,9 @@ static bool is_number_sound(const struct lm_bus_packing *p)
 {
     const uint32_t count = p->bits.count;
     const bool is_float = p->type == LM_BUS_FLOAT;
-    if (p->type > LM_BUS_FLOAT || (is_float ? count != 32 && count != 64 : count - 1 > 31)) {
+    const bool has_float_bits = count == 32 || count == 64;
+    const bool has_whole_bits = count >= 1 && count <= 32;
+    if (p->type > LM_BUS_FLOAT || !(is_float ? has_float_bits : has_whole_bits)) {
         return false;
     }
     return !p->has_none || (!is_float && (count == 32 || p->none >> count == 0));

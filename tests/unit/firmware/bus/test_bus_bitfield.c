@@ -166,6 +166,25 @@ TEST(the_step_of_a_single_float_is_its_last_place)
     assert_int_equal(event.step, 45);
 }
 
+/* Rows of a database's own table, whose factors nobody has chosen well. */
+TEST(the_step_of_a_float_of_large_places_is_its_last_place_and_never_more_than_a_word)
+{
+    struct lm_bus_row row = float_altitude(32, 20);
+    struct lm_bus_event event;
+    row.field = LM_BUS_LATITUDE;
+    row.low = -90;
+    row.high = 90;
+    row.packing.shift = 1;
+    assert_int_equal(read_word(&row, 0x44800000, &event), LM_BUS_VALUE); /* 2^10, 2^30 counts */
+    assert_int_equal(event.value, 1 << 29);
+    assert_int_equal(event.step, 1 << (30 - 23 - 1)); /* of 24 places the last, halved */
+    row.packing.multiplier = 1 << 29;
+    row.packing.bias = -(1LL << 59); /* takes most of the number away */
+    assert_int_equal(read_word(&row, 0x44800000, &event), LM_BUS_VALUE);
+    assert_int_equal(event.value, 0);
+    assert_int_equal(event.step, UINT32_MAX);
+}
+
 TEST(the_step_of_an_integer_is_its_resolution_and_never_more_than_a_word)
 {
     static const struct {
@@ -238,6 +257,34 @@ TEST(a_frame_is_refused_for_its_form_and_counted)
     assert_int_equal(outcome_of(f, LM_BUS_NOT_DATA), 1);
     f = good, f.id = ID + 1;
     assert_int_equal(outcome_of(f, LM_BUS_UNUSED), 1);
+}
+
+TEST(a_row_is_of_no_frame_with_a_short_identifier)
+{
+    const struct lm_bus_row row = altitude((struct lm_bus_bits){0, 8}, false);
+    struct lm_can_frame frame = {.id = ID, .is_extended = true, .length = 8};
+    assert_true(lm_bus_bitfield_is_row(&row, &frame));
+    frame.is_extended = false;
+    assert_false(lm_bus_bitfield_is_row(&row, &frame));
+}
+
+TEST(a_frame_gives_no_more_events_than_there_is_room_for)
+{
+    struct lm_bus_row rows[LM_BUS_EVENTS + 1];
+    for (size_t i = 0; i < LM_BUS_EVENTS + 1; i++) {
+        rows[i] = altitude((struct lm_bus_bits){(uint8_t)(4 * i), 4}, false);
+    }
+    const struct lm_bus_profile profile = {/* that lm_bus_profile_check would refuse */
+                                           .rows = rows,
+                                           .row_count = LM_BUS_EVENTS + 1,
+                                           .framing = LM_BUS_PACKED};
+    const struct lm_can_frame frame = {.id = ID, .is_extended = true, .length = 8};
+    struct lm_bus bus;
+    struct lm_bus_event events[LM_BUS_EVENTS + 1] = {[LM_BUS_EVENTS] = {.value = 1234}};
+    lm_bus_init(&bus, &profile);
+    assert_int_equal(lm_bus_take(&bus, &frame, events), LM_BUS_EVENTS);
+    assert_int_equal(events[LM_BUS_EVENTS - 1].row, LM_BUS_EVENTS - 1);
+    assert_int_equal(events[LM_BUS_EVENTS].value, 1234);
 }
 
 TEST(a_controllers_filters_let_pass_what_the_rows_read_and_each_once)

@@ -124,6 +124,36 @@ TEST(each_kind_of_foreign_record_has_its_own_answer)
     assert_int_equal(status_with(AT_NAME, 'C'), LM_OK);
 }
 
+TEST(a_record_of_more_rows_than_a_table_has_is_refused)
+{
+    enum { ROWS = LM_BUS_ROWS_MAX + 1 };
+    static uint8_t many[LM_BUS_RECORD_HEAD_BYTES + (size_t)ROWS * LM_BUS_RECORD_ROW_BYTES];
+    const uint16_t bytes = sizeof many;
+    (void)lm_bus_pack(&lm_bus_canas17, record);
+    memcpy(many, record, LM_BUS_RECORD_HEAD_BYTES);
+    for (size_t i = 0; i < ROWS; i++) {
+        memcpy(many + LM_BUS_RECORD_HEAD_BYTES + i * LM_BUS_RECORD_ROW_BYTES,
+               record + LM_BUS_RECORD_HEAD_BYTES, LM_BUS_RECORD_ROW_BYTES);
+    }
+    many[AT_ROWS] = ROWS;
+    memcpy(many + AT_BYTES, &bytes, sizeof bytes);
+    const uint32_t crc = fx_crc32c(0, many + AT_VERSION, sizeof many - AT_VERSION);
+    memcpy(many, &crc, sizeof crc);
+    assert_int_equal(lm_bus_unpack(&table, many, sizeof many), LM_ERR_TABLE);
+}
+
+TEST(a_name_without_room_is_cut_and_ends)
+{
+    struct lm_bus_profile p = lm_bus_canas17;
+    char name[LM_BUS_PROFILE_NAME_SIZE + 4];
+    memset(name, 'n', sizeof name);
+    name[sizeof name - 1] = '\0';
+    p.name = name;
+    assert_int_equal(lm_bus_unpack(&table, record, lm_bus_pack(&p, record)), LM_OK);
+    assert_int_equal(strlen(table.profile.name), LM_BUS_PROFILE_NAME_SIZE - 1);
+    assert_memory_equal(table.profile.name, name, LM_BUS_PROFILE_NAME_SIZE - 1);
+}
+
 /* ---- the check ---- */
 
 static const struct lm_bus_row of_canas = {.name = "pitch",
@@ -210,6 +240,19 @@ SPOIL(large_places, row->packing.frac_bits = 61)
 SPOIL(large_bias, row->packing.bias = 1LL << 61)
 SPOIL(low_bias, row->packing.bias = -(1LL << 61))
 SPOIL(part_of_a_set, row->field = LM_BUS_RAIN_RATE)
+SPOIL(part_of_a_target, (row->field = LM_BUS_LIVE_LATITUDE, row->high = 90))
+SPOIL(sea_state, row->field = LM_BUS_SEA_STATE)
+SPOIL(last_field, row->field = LM_BUS_FIELDS - 1)
+SPOIL(crossed_bits, (row->packing.is_fast = true, row->packing.bits = (struct lm_bus_bits){7, 58}))
+SPOIL(float_none, (row->packing.type = LM_BUS_FLOAT,
+                   row->packing.bits = (struct lm_bus_bits){0, 32}, row->packing.has_none = true))
+SPOIL(float_of_no_size,
+      (row->packing.type = LM_BUS_FLOAT, row->packing.bits = (struct lm_bus_bits){0, 48}))
+SPOIL(none_of_a_word, (row->packing.has_none = true, row->packing.none = 0xffff))
+SPOIL(none_of_32_bits, (row->packing.has_none = true, row->packing.none = 0xffffffff,
+                        row->packing.bits = (struct lm_bus_bits){0, 32}))
+SPOIL(double_float,
+      (row->packing.type = LM_BUS_FLOAT, row->packing.bits = (struct lm_bus_bits){0, 64}))
 
 TEST(every_promise_of_a_row_is_checked)
 {
@@ -219,10 +262,13 @@ TEST(every_promise_of_a_row_is_checked)
     static void (*const canas[])(struct lm_bus_row *) = {no_type, bits_type, two_types, low_id,
                                                          high_id, same_id,   no_unit,   many_units};
     static void (*const packed[])(struct lm_bus_row *) = {
-        no_mask,    wide_mask,   id_outside,   no_bits,    many_bits,   late_bits,
-        far_bits,   short_float, unknown_type, wide_match, late_match,  large_match,
-        large_none, no_factor,   large_factor, no_shift,   large_shift, large_places,
-        large_bias, low_bias,    part_of_a_set};
+        no_mask,       wide_mask,        id_outside,   no_bits,      many_bits,
+        late_bits,     far_bits,         short_float,  unknown_type, wide_match,
+        late_match,    large_match,      large_none,   no_factor,    large_factor,
+        no_shift,      large_shift,      large_places, large_bias,   low_bias,
+        part_of_a_set, part_of_a_target, crossed_bits, float_none,   float_of_no_size};
+    static void (*const sound[])(struct lm_bus_row *) = {sea_state, last_field, double_float,
+                                                         none_of_a_word, none_of_32_bits};
     for (uint8_t framing = LM_BUS_CANAEROSPACE; framing <= LM_BUS_PACKED; framing++) {
         uint32_t at = 99;
         assert_int_equal(check_spoilt(framing, nothing, &at), LM_OK);
@@ -237,6 +283,9 @@ TEST(every_promise_of_a_row_is_checked)
     }
     for (size_t i = 0; i < sizeof packed / sizeof *packed; i++) {
         assert_int_equal(check_spoilt(LM_BUS_PACKED, packed[i], NULL), LM_ERR_TABLE);
+    }
+    for (size_t i = 0; i < sizeof sound / sizeof *sound; i++) {
+        assert_int_equal(check_spoilt(LM_BUS_PACKED, sound[i], NULL), LM_OK);
     }
 }
 
@@ -301,6 +350,22 @@ TEST(a_frame_has_at_most_eight_numbers_and_a_field_one_pair_of_halves)
     const struct lm_bus_profile q = {.rows = rows, .row_count = 2};
     assert_int_equal(lm_bus_profile_check(&q, &at), LM_ERR_TABLE);
     assert_int_equal(at, 2);
+}
+
+TEST(the_rows_of_a_frame_are_all_of_single_frames_or_all_of_fast_packets)
+{
+    struct lm_bus_row rows[2] = {of_packed, of_packed};
+    const struct lm_bus_profile p = {.rows = rows, .row_count = 2, .framing = LM_BUS_PACKED};
+    rows[1].priority = 1;
+    for (int is_fast = 0; is_fast < 4; is_fast++) {
+        rows[0].packing.is_fast = (is_fast & 1) != 0;
+        rows[1].packing.is_fast = (is_fast & 2) != 0;
+        rows[1].id = rows[0].id;
+        assert_int_equal(lm_bus_profile_check(&p, NULL),
+                         is_fast == 0 || is_fast == 3 ? LM_OK : LM_ERR_TABLE);
+        rows[1].id++; /* of another frame */
+        assert_int_equal(lm_bus_profile_check(&p, NULL), LM_OK);
+    }
 }
 
 TEST(every_built_in_profile_passes)

@@ -620,6 +620,24 @@ TEST(services_of_both_ranges_are_told_from_values)
     }
 }
 
+static bool is_among(const char *name, const char *names)
+{
+    char padded[16];
+    (void)snprintf(padded, sizeof padded, " %s ", name);
+    return strstr(names, padded) != NULL;
+}
+
+TEST(words_and_clocks_have_types_of_their_own)
+{
+    static const char words[] = " SHORT2 USHORT2 BSHORT2 CHAR4 UCHAR4 BCHAR4 ACHAR4 ";
+    static const char clocks[] = " CHAR4 UCHAR4 CHAR3 UCHAR3 ";
+    for (uint8_t type = 0; type < LM_CANAS_TYPES; type++) {
+        const char *name = lm_canas_types[type].name;
+        assert_int_equal(lm_canas_fits(LM_BUS_LIVE_VELOCITY, type), is_among(name, words));
+        assert_int_equal(lm_canas_fits(LM_BUS_UTC, type), is_among(name, clocks));
+    }
+}
+
 TEST(no_field_fits_a_type_that_does_not_exist)
 {
     for (uint32_t field = 0; field < LM_BUS_FIELDS; field++) {

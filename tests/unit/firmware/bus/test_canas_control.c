@@ -242,6 +242,20 @@ TEST(frames_of_a_wrong_type_length_sender_or_act_are_counted)
     assert_int_equal(c.heard.head, 0);
 }
 
+TEST(what_the_board_says_of_itself_is_not_told)
+{
+    static const enum lm_control_kind kinds[] = {LM_CONTROL_ENVIRONMENT, LM_CONTROL_SLOTS,
+                                                 LM_CONTROL_IMAGE};
+    for (size_t i = 0; i < sizeof kinds / sizeof *kinds; i++) {
+        struct lm_canas_control c = begin(NODE, true);
+        const struct lm_control control = {.kind = kinds[i]};
+        lm_canas_control_tell(&c, &control, 0);
+        lm_canas_control_send(&c, &can);
+        assert_int_equal(c.count.told + c.count.lost, 0);
+        assert_int_equal(wire.count, 0);
+    }
+}
+
 TEST(a_display_without_a_node_or_a_bus_tells_nothing)
 {
     struct lm_canas_control c = begin(0, true);

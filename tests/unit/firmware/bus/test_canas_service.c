@@ -245,6 +245,22 @@ TEST(an_answer_waits_100_ms_for_the_bus_and_no_longer)
     assert_int_equal(w.count, 1);
 }
 
+TEST(a_clock_that_was_set_back_does_not_silence_the_display)
+{
+    struct lm_canas_service s = begin();
+    struct wire w = {.answer = LM_OK};
+    const struct lm_can can = port_of(&w);
+    ask(&s, 0, LM_CANAS_IDS, 900000000);
+    lm_canas_service_answer(&s, &can, 0, 900000000);
+    assert_int_equal(w.count, 1);
+    ask(&s, 0, LM_CANAS_IDS, 1000);
+    lm_canas_service_answer(&s, &can, 0, 1000);
+    assert_int_equal(w.count, 2);
+    ask(&s, 0, LM_CANAS_IDS, 1001);
+    lm_canas_service_answer(&s, &can, 0, 1001); /* from here on the pause counts again */
+    assert_int_equal(w.count, 2);
+}
+
 TEST(a_flood_of_requests_is_no_flood_of_answers)
 {
     struct lm_canas_service s = begin();
