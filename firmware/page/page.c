@@ -340,7 +340,7 @@ void lm_page_take(struct lm_page *p, const uint8_t byte[LM_PAGE_BYTES], uint32_t
 static bool label_of_key(const struct lm_page *p, const struct lm_page_key *key,
                          struct lm_label *label)
 {
-    if (!key || (!key->words && !key->text) || (key->is_shown && !key->is_shown(p))) {
+    if ((!key->words && !key->text) || (key->is_shown && !key->is_shown(p))) {
         return false;
     }
     if (key->text) {

@@ -132,12 +132,13 @@ void lm_swap_take(struct lm_unit *u, const struct lm_can_frame *frame)
         return;
     }
     const uint8_t service = data[2], code = data[3];
-    const bool is_sound =
-        frame->length == HEADER_BYTES + PART_BYTES && data[0] == s->partner &&
-        data[1] == LM_CANAS_UCHAR4 &&
-        (service < LM_SWAP_ASK
-             ? take_part(s, data, (uint16_t)(code + service / LM_SWAP_OF_ANSWER * OF_ANSWER))
-             : data[HEADER_BYTES] == s->node && take_act(u, service, code));
+    bool is_sound = frame->length == HEADER_BYTES + PART_BYTES && data[0] == s->partner &&
+                    data[1] == LM_CANAS_UCHAR4;
+    if (is_sound && service < LM_SWAP_ASK) {
+        is_sound = take_part(s, data, (uint16_t)(code + service / LM_SWAP_OF_ANSWER * OF_ANSWER));
+    } else if (is_sound) {
+        is_sound = data[HEADER_BYTES] == s->node && take_act(u, service, code);
+    }
     s->refused += !is_sound;
 }
 

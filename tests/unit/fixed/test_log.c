@@ -207,6 +207,19 @@ TEST(powers_of_many_are_within_0_012_dB_from_minus_45_to_24_dB_and_never_fall)
     assert_int_equal(fx_power_q24_vec((1 << 17) - 1), fx_power_q24_vec(50 * 256));
 }
 
+TEST(powers_of_64_bits_are_within_0_014_dB_up_to_where_they_saturate)
+{
+    for (int32_t db_q8 = -66 * 256; db_q8 < 96 * 256; db_q8 += 7) {
+        const double db = 10 * log10((double)fx_power_q32_vec(db_q8) / 4294967296.0);
+        assert_true(fabs(db - db_q8 / 256.0) <= 0.014);
+    }
+    assert_int_equal(fx_power_q32_vec(-97 * 256), 1);
+    assert_int_equal(fx_power_q32_vec(1 - (1 << 16)), 1);
+    const uint64_t most = fx_power_q32_vec(97 * 256);
+    assert_true(most > UINT64_MAX - (UINT64_MAX >> 8));
+    assert_true(fx_power_q32_vec((1 << 16) - 1) == most);
+}
+
 TEST(sums_of_many_are_within_0_018_dB_either_way_round)
 {
     double worst = 0;

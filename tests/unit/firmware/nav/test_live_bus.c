@@ -452,6 +452,17 @@ TEST(a_target_heard_a_little_ahead_of_the_clock_stays)
     free(ear);
 }
 
+TEST(a_target_ahead_of_a_clock_that_steps_stays_as_far_ahead)
+{
+    struct ear *ear = open_ear();
+    hear_small(ear, (struct from){20, 5, 1, 5 * S}, 460000000);
+    const uint64_t ahead_us = target(ear, 5)->motion_us - 5 * S;
+    assert_int_equal(ahead_us, 77);
+    lm_live_bus_step_clock(&ear->live, 5 * S, 100 * S);
+    assert_int_equal(target(ear, 5)->motion_us, 100 * S + ahead_us);
+    free(ear);
+}
+
 TEST(what_is_of_no_live_target_is_not_taken)
 {
     struct ear *ear = open_ear();

@@ -516,6 +516,24 @@ TEST(of_too_many_senders_the_best_are_followed)
     assert_int_equal(ear.nav.crowded, 2);
 }
 
+/* The list of longitudes is full, and that of the one sender with a latitude is not on it. */
+TEST(a_latitude_finds_no_mate_among_the_longitudes_of_others)
+{
+    struct ear ear;
+    open_ear(&ear);
+    const struct lm_bus_row *rows = lm_bus_canas17.rows;
+    const uint32_t bits = bus_float_bits(10);
+    for (uint32_t channel = 0; channel < LM_NAV_SOURCES; channel++) {
+        const uint32_t id = rows[channel < LM_BUS_CHANNELS ? GPS + 1 : INS + 1].id;
+        hear(&ear,
+             on_channel(bus_frame(id, LM_CANAS_FLOAT, 0, bits, 0), channel % LM_BUS_CHANNELS));
+    }
+    assert_true(ear.nav.item[LM_BUS_LONGITUDE][LM_NAV_SOURCES - 1].has_value);
+    hear(&ear, bus_frame(rows[AUXILIARY].id, LM_CANAS_FLOAT, 0, bits, 0));
+    assert_int_equal(at(&ear, 1000).position_quality, LM_NAV_DEAD);
+    assert_int_equal(ear.nav.crowded, 0);
+}
+
 TEST(every_group_tells_who_said_it_and_how_long_ago)
 {
     struct ear ear;

@@ -87,3 +87,29 @@ TEST(the_azimuth_is_chosen_in_norm_alone)
         assert_int_equal(p.azimuth_index, 0);
     }
 }
+
+/* What another display or a file says of the page: each field of view belongs to its mode, each
+ * scale to both. */
+TEST(a_page_of_bytes_has_no_field_of_view_and_no_scale_that_its_mode_has_not)
+{
+    enum { MODE = 2, FOV, RANGE };
+    struct lm_page p;
+    uint8_t byte[LM_PAGE_BYTES];
+    uint32_t refused_fovs = 0, refused_ranges = 0;
+    lm_page_init(&p, &lm_radar_default);
+    lm_page_bytes(&p, byte);
+    assert_true(lm_page_bytes_are_sound(&p, byte));
+    for (uint8_t mode = 0; mode < LM_SECTOR_CHOICES; mode++) {
+        for (uint8_t fov = 0; fov < LM_FOVS; fov++) {
+            for (uint8_t range = 0; range < p.radar->ranges; range++) {
+                byte[MODE] = mode, byte[FOV] = fov, byte[RANGE] = range;
+                const bool has_fov = fov <= lm_radar_fov_last(p.radar, mode);
+                const bool has_range = range <= lm_radar_range_last(p.radar, mode, fov);
+                assert_int_equal(lm_page_bytes_are_sound(&p, byte), has_fov && has_range);
+                refused_fovs += !has_fov && has_range;
+                refused_ranges += has_fov && !has_range;
+            }
+        }
+    }
+    assert_true(refused_fovs > 0 && refused_ranges > 0);
+}
