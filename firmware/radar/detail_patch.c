@@ -381,8 +381,7 @@ static uint32_t draw_shape(const struct lm_detail_shape *shape, uint32_t line, u
     const int32_t u_q16 = (int32_t)((int64_t)shape->u_line_q16 * off_q8 >> 8);
     const int32_t v_q16 = (int32_t)((int64_t)shape->v_line_q16 * off_q8 >> 8);
     struct interval d = {-shape->cell_q8, (int64_t)((cells - 1) * 256) - shape->cell_q8};
-    if (d.to_q8 < d.from_q8 || !narrow(&d, u_q16, shape->u_cell_q16) ||
-        !narrow(&d, v_q16, shape->v_cell_q16)) {
+    if (!narrow(&d, u_q16, shape->u_cell_q16) || !narrow(&d, v_q16, shape->v_cell_q16)) {
         return 0;
     }
     /* Both are cells of the line, where the interval began. */

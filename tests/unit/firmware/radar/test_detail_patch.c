@@ -532,4 +532,101 @@ TEST(a_building_stands_level_on_the_terrain_under_its_middle)
     assert_true(fabs(level / 16384.0 - wanted) < 0.1);
 }
 
+/* Whether a tile so many rows and columns off takes an item. */
+static bool is_tile_taken(const struct scene *s, int rows_off, int columns_off)
+{
+    const struct lm_detail_item item = random_block();
+    lm_detail_patch_clear(&patch, &map.db);
+    open_record(s, rows_off, columns_off, 0);
+    add_alone(s, &item);
+    assert_int_equal(patch.shape_count, 0);
+    return patch.tile_count != 0;
+}
+
+/* Tiles are 305 m high, and the northern and the eastern corners of those that are left out first
+ * are the ones that lie beyond. */
+TEST(a_tile_of_which_a_corner_is_beyond_300_km_is_left_out)
+{
+    const struct scene s = scene_at(46, 0, 20000, 1);
+    const double side_m = ldexp(40007862.9, SHIFT0 + 6 - 32), least_m = 297000, most_m = 302000;
+    const int rows = (int)(least_m / side_m),
+              columns = (int)(least_m / (side_m * cos(46 * degree)));
+    int taken[2] = {0};
+    assert_true(is_tile_taken(&s, rows, 0) && is_tile_taken(&s, 0, columns));
+    while (is_tile_taken(&s, rows + taken[0], 0)) {
+        taken[0]++;
+    }
+    while (is_tile_taken(&s, 0, columns + taken[1])) {
+        taken[1]++;
+    }
+    assert_true((rows + taken[0]) * side_m < most_m);
+    assert_true((columns + taken[1]) * side_m * cos(46 * degree) < most_m);
+    assert_false(is_tile_taken(&s, rows + taken[0] + 2, 0)); /* all of it is */
+}
+
+TEST(what_lies_behind_the_antenna_is_left_out)
+{
+    for (int is_behind = 0; is_behind < 2; is_behind++) {
+        const struct scene s = scene_at(46, 0, is_behind ? 1500 : 4000, 9);
+        struct lm_detail_item hall = random_block();
+        lm_detail_patch_clear(&patch, &map.db);
+        open_record(&s, -6, 0, 0); /* 1.6 km before the middle */
+        hall.north = 49152;
+        hall.length_dm = hall.width_dm = 50000;
+        add_alone(&s, &hall);
+        assert_int_equal(patch.tile_count, 1);
+        assert_int_equal(patch.shape_count, !is_behind);
+    }
+}
+
+TEST(a_line_does_not_darken_what_is_brighter)
+{
+    const struct scene s = scene_at(46, 90, 20000, 1);
+    (void)glint_db(0); /* its code is 180 */
+    lm_detail_patch_close(&patch);
+    for (uint32_t line = 0; line < s.lines; line++) {
+        for (uint32_t i = 0; i < CELLS; i++) {
+            ground.cell[i] = 200 << 8 | TINY_SOIL << 4;
+        }
+        lm_detail_patch_draw(&patch, line, &ground, s.g.cells);
+        for (uint32_t i = 0; i < CELLS; i++) {
+            assert_int_equal(ground.cell[i], 200 << 8 | TINY_SOIL << 4);
+        }
+    }
+}
+
+/* A line of the map's structures through two tiles, the second of which has detail. */
+static void draw_structures(uint32_t row, uint32_t column)
+{
+    enum { BORDER = 100, STRUCTURE = 100 << 8 | TINY_STRUCTURE << 4 | 5 };
+    for (uint32_t i = 0; i < CELLS; i++) {
+        ground.cell[i] = i % 2 ? STRUCTURE : 100 << 8 | TINY_TREES << 4;
+    }
+    ground.run_count = 2;
+    ground.run[0] = (struct lm_scan_run){row, column + 1, BORDER};
+    ground.run[1] = (struct lm_scan_run){row, column, CELLS};
+    lm_detail_patch_draw(&patch, 0, &ground, CELLS);
+    ground.run_count = 0;
+    for (uint32_t i = 0; i < CELLS; i++) {
+        const uint32_t under = 70 << 8 | TINY_CONCRETE << 4;
+        const bool is_uncovered = patch.tile_count != 0 && i >= BORDER;
+        assert_int_equal(ground.cell[i], i % 2 == 0     ? 100 << 8 | TINY_TREES << 4
+                                         : is_uncovered ? under
+                                                        : (uint32_t)STRUCTURE);
+    }
+}
+
+TEST(structures_of_the_map_go_where_their_tile_has_detail)
+{
+    const struct scene s = scene_at(46, 0, 20000, 1);
+    open_record(&s, 0, 0, 70 << 8 | TINY_CONCRETE << 4);
+    draw_structures(reader.row, reader.column);
+    lm_detail_patch_add(&patch, &reader, &map.tiles, &s.g, FX_BAM_DEG(6)); /* of no item */
+    open_record(&s, 3, 0, 0);
+    lm_detail_patch_add(&patch, &reader, &map.tiles, &s.g, FX_BAM_DEG(6));
+    lm_detail_patch_close(&patch);
+    assert_int_equal(patch.tile_count, 2);
+    draw_structures(reader.row - 3, reader.column);
+}
+
 TEST_GROUP(open_map, close_map);
