@@ -242,14 +242,14 @@ static bool has_same_receiver(const struct lm_sector *s)
 /* Recompute the ranges if the height has changed by a hundredth and a metre, or the window has
  * changed. Until then all stages keep the old height, gain and horizon alike. */
 static void refresh_ranges(struct lm_sector *s, struct lm_tile_cache *tiles, int32_t height_m_q10,
-                           int32_t reference_m_q10, uint32_t old_edge_m_q8, uint32_t old_half_m)
+                           int32_t reference_m_q10, uint32_t old_edge_m_q8)
 {
     const bool has_height = s->is_shared ? height_m_q10 == s->grid.height_m_q10 &&
                                                reference_m_q10 == s->grid.reference_m_q10
                                          : !differs(height_m_q10, s->grid.height_m_q10) &&
                                                !differs(reference_m_q10, s->grid.reference_m_q10);
-    const bool is_same = s->grid.cells != 0 && s->edge_m_q8 == old_edge_m_q8 &&
-                         s->half_m == old_half_m && has_height && has_same_receiver(s);
+    const bool is_same =
+        s->grid.cells != 0 && s->edge_m_q8 == old_edge_m_q8 && has_height && has_same_receiver(s);
     if (!is_same) {
         set_ranges(s, tiles, height_m_q10, reference_m_q10);
     }
@@ -326,7 +326,7 @@ static void set_floor(struct lm_sector *s)
 void lm_sector_begin(struct lm_sector *s, struct lm_tile_cache *tiles,
                      const struct lm_platform *platform)
 {
-    const uint32_t old_edge_m_q8 = s->edge_m_q8, old_half_m = s->half_m;
+    const uint32_t old_edge_m_q8 = s->edge_m_q8;
     s->half_m = s->radar->range[s->command.range_index].range_m * fov_of(s)->window_permille / 1000;
     set_lod(s, tiles->db);
     int32_t height_m_q10 = platform->height_m_q10,
@@ -344,7 +344,7 @@ void lm_sector_begin(struct lm_sector *s, struct lm_tile_cache *tiles,
     } else {
         set_sector(s);
     }
-    refresh_ranges(s, tiles, height_m_q10, reference_m_q10, old_edge_m_q8, old_half_m);
+    refresh_ranges(s, tiles, height_m_q10, reference_m_q10, old_edge_m_q8);
     if (lm_sector_is_window(s)) {
         s->has_foreground = false;
         lm_beam_clear(&s->beam); /* its samples were traced from another position */

@@ -105,7 +105,7 @@ static uint32_t first_ground_m_q8(const struct lm_track_scene *s, const struct s
             return (uint32_t)(way->begin_m_q8 + (int64_t)i * way->cell_m_q8 + way->cell_m_q8 / 2 -
                               back_m_q8);
         }
-        before_m_q10 = here_m_q10 < 0 ? here_m_q10 : -1;
+        before_m_q10 = here_m_q10;
     }
     return 0;
 }

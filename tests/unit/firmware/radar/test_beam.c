@@ -351,3 +351,47 @@ TEST(auto_tilt_is_that_of_the_reference)
         }
     }
 }
+
+/* What no sharpening makes of a beam: a ratio below one, and one that leaves nothing beyond the
+ * nearest sample. */
+TEST(weights_of_any_ratio_add_up_to_one)
+{
+    for (uint32_t ratio_q8 = 1; ratio_q8 <= 1u << 16; ratio_q8 += 1 + ratio_q8 / 8) {
+        struct lm_beam b;
+        struct lm_beam_taps taps;
+        uint32_t sum = 0;
+        lm_beam_clear(&b);
+        lm_beam_set_taps(&b, &lm_radar_default, 12345678, ratio_q8, &taps);
+        for (int j = 0; j < LM_BEAM_TAPS; j++) {
+            sum += taps.weight_q16[j];
+        }
+        assert_int_equal(sum, 65536);
+        if (ratio_q8 < 181) { /* the root of 1/2 */
+            assert_int_equal(b.fineness, 0);
+        }
+    }
+}
+
+TEST(an_antenna_without_a_beam_has_no_gain)
+{
+    struct lm_antenna_pattern pattern;
+    const struct lm_antenna_table table = {.elevation_beam = 1};
+    lm_antenna_pattern_set(&pattern, &table);
+    for (int n = 0; n < LM_ANTENNA_PATTERN_STEPS; n++) {
+        assert_int_equal(pattern.gain_db_q8[n], -96 * 256);
+    }
+}
+
+/* The narrowest beam that counts, 1/180 degree, with samples nearly a degree apart. */
+TEST(a_line_between_two_samples_of_a_needle_s_beam_is_the_nearest_one)
+{
+    struct lm_radar needle = lm_radar_default;
+    struct lm_beam b;
+    struct lm_beam_taps taps;
+    needle.antenna.azimuth_beam = 1;
+    lm_beam_clear(&b);
+    lm_beam_set_taps(&b, &needle, 12345678, 256, &taps);
+    for (int j = 0; j < LM_BEAM_TAPS; j++) {
+        assert_int_equal(taps.weight_q16[j], j == LM_BEAM_TAPS / 2 ? 65536 : 0);
+    }
+}

@@ -144,3 +144,14 @@ TEST(a_shadow_is_some_16_dB_below_the_grass_and_has_grain)
     assert_true(deviation(&shadow) > 4);
     assert_true(shadow.sum / shadow.n < 0.5 * grass.sum / grass.n);
 }
+
+/* A fourth of a line's cells is looked at, from another one on in each line. */
+TEST(a_line_that_is_too_short_to_be_looked_at_leaves_nothing)
+{
+    struct lm_patch_floor f;
+    const int16_t level_q8[LM_CELLS_ROOM] = {0};
+    lm_patch_floor_clear(&f);
+    assert_true(run(&f, 3, level_q8, 3) < -85);
+    assert_true(run(&f, 7, level_q8, 2) < -85);
+    assert_true(run(&f, 2, level_q8, 3) > -60); /* this one has a cell */
+}

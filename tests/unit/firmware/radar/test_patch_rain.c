@@ -394,3 +394,39 @@ TEST(bodies_in_a_patch_are_weakened_and_the_veil_lies_on_the_sea)
     assert_true(fabs(rainy_sea_db - veil_db) < 1);
     tiny_map_close(&map);
 }
+
+/* A quarter of an eighth of the Earth away there is no plane to have a circle in. */
+TEST(rain_on_another_side_of_the_earth_is_left_out)
+{
+    struct world *w = make_world(30000, 5000, 5);
+    w->environment.rain_count = 2;
+    w->environment.rain[0] = (struct lm_rain){{FX_BAM_DEG(46), FX_BAM_DEG(200)}, 5000, 20};
+    w->environment.rain[1] = (struct lm_rain){{FX_BAM_DEG(46), FX_BAM_DEG(11)}, 5000, 20};
+    lm_patch_rain_find(&w->rain, &w->environment, &w->radar, w->antenna, 0);
+    assert_int_equal(w->rain.count, 1);
+    assert_int_equal(w->rain.shower[0].radius_m, 5000);
+    free(w);
+}
+
+/* All of the rain lies before a scatterer that is displaced beyond any range. */
+TEST(a_scatterer_however_far_has_no_more_loss_than_all_the_rain)
+{
+    static struct lm_target_patch points;
+    struct world *w = make_world(30000, 5000, 5);
+    int32_t loss_db_q8[2];
+    add_rain(w, 15000, 0, 4000, 40);
+    lm_patch_rain_find(&w->rain, &w->environment, &w->radar, w->antenna, 0);
+    lm_patch_rain_set(&w->rain, &w->radar, &w->geometry, LM_DB_Q8(-46));
+    assert_int_equal(w->rain.count, 1);
+    for (int is_far = 0; is_far < 2; is_far++) {
+        memset(&points, 0, sizeof points);
+        points.scatterer_count = 1;
+        points.scatterer[0] =
+            (struct lm_patch_scatterer){.line = LINES / 2, .cell = is_far ? 1 << 22 : CELLS};
+        lm_patch_rain_weaken(&w->rain, &w->geometry, &points);
+        loss_db_q8[is_far] = -points.scatterer[0].level_db_q8;
+    }
+    assert_true(loss_db_q8[0] > 256);
+    assert_int_equal(loss_db_q8[1], loss_db_q8[0]);
+    free(w);
+}

@@ -456,3 +456,16 @@ TEST(a_look_that_was_kept_is_what_the_beam_would_see_anew)
     assert_true(kept > 1500);
     free_rig(r);
 }
+
+TEST(a_sweep_that_has_no_lines_yet_begins_again_at_its_first)
+{
+    static struct lm_sector s;
+    memset(&s, 0, sizeof s);
+    s.is_leftward = true;
+    s.line = 7;
+    lm_sector_begin_again(&s);
+    assert_int_equal(s.line, 0);
+    s.lines = 5;
+    lm_sector_begin_again(&s);
+    assert_int_equal(s.line, 4);
+}

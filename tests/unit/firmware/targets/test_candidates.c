@@ -131,6 +131,61 @@ TEST(a_sharpened_line_has_the_movers_that_appear_on_it_and_not_where_they_are)
     assert_int_equal(met_on_line(6, 0, 200, true, false), 0);
 }
 
+/* At a crawl along the track a mover is displaced by more than any beam shows. */
+TEST(what_is_displaced_out_of_the_beam_is_on_no_sharpened_line)
+{
+    put(10000, 0, -10, 0);
+    int met = 0;
+    for (int azimuth = -60; azimuth <= 60; azimuth++) {
+        met += (int)met_on_line(azimuth, 90, 20, true, false);
+    }
+    assert_int_equal(met, 0);
+}
+
+TEST(a_set_has_any_target_if_it_has_one_of_the_image_or_a_live_one)
+{
+    struct lm_target_set set = {0};
+    assert_false(lm_target_set_is_live(&set) || lm_target_set_has_any(&set));
+    memset(&live, 0, sizeof live);
+    set.live = &live;
+    assert_false(lm_target_set_is_live(&set) || lm_target_set_has_any(&set));
+    live.count = 1;
+    assert_true(lm_target_set_is_live(&set) && lm_target_set_has_any(&set));
+    set = (struct lm_target_set){.count = 1};
+    assert_true(lm_target_set_has_any(&set) && !lm_target_set_is_live(&set));
+}
+
+/* The plane that comes first is wider than the reach, by what it may be wrong. */
+TEST(of_a_target_that_goes_away_reach_ends_once)
+{
+    uint32_t ends = 0, before = 1;
+    for (int away_m = 9000; away_m < 16000; away_m += 3) {
+        put(away_m, 0, 0, 0);
+        const uint32_t count = met_within(9000);
+        ends += count != before;
+        before = count;
+    }
+    assert_int_equal(ends, 1);
+    assert_int_equal(before, 0);
+}
+
+TEST(a_live_target_without_room_is_counted_as_left_out)
+{
+    struct lm_target items[LM_TARGET_CANDIDATES_MAX];
+    put(1000, 0, 0, 0);
+    for (int i = 0; i < LM_TARGET_CANDIDATES_MAX; i++) {
+        items[i] = point_at(46, 11, 0, 10);
+    }
+    const struct lm_target_set set = {
+        .items = items, .count = LM_TARGET_CANDIDATES_MAX, .live = &live};
+    const struct lm_target_query query = {.position = antenna, .reach_m = 9000, .time_us = 7 * S};
+    lm_target_candidates_select(&candidates, &set, &query);
+    assert_int_equal(candidates.left_out, 0);
+    lm_target_candidates_add_live(&candidates, &query);
+    assert_int_equal(candidates.count, LM_TARGET_CANDIDATES_MAX);
+    assert_int_equal(candidates.left_out, 1);
+}
+
 TEST(a_target_that_is_not_there_is_no_candidate)
 {
     const struct lm_target item = point_at(46, 11, 100, 10);

@@ -226,6 +226,47 @@ TEST(what_lies_below_the_horizon_of_the_cells_before_is_hidden)
     }
 }
 
+/* Across a pole no place is found: neither is drawn, whatever line looks there. */
+TEST(a_target_across_a_pole_is_on_no_line)
+{
+    const struct lm_position here = {FX_BAM_DEG(89) + FX_BAM_DEG(9) / 10, 0};
+    const struct lm_target t = point_at(89.9, 180, 0, 40);
+    struct lm_target_candidates candidates = near_of(&t, 1, here, 60000);
+    if (candidates.count == 0) { /* or that is so already when it is chosen */
+        const struct lm_target near = point_at(89.9, 0.5, 0, 40);
+        candidates = near_of(&near, 1, here, 60000);
+        assert_int_equal(candidates.count, 1);
+        candidates.candidate[0].state.position.longitude = FX_BAM_180;
+    }
+    for (uint32_t i = 0; i < 3 * LINES; i++) {
+        int16_t level_q8[LM_CELLS_MAX];
+        struct lm_target_line l = sector_line(89.9, 0, 120.0 * (i / LINES), i % LINES);
+        clear(level_q8);
+        assert_int_equal(lm_target_line_add(&candidates, &l, NULL, level_q8), 0);
+    }
+}
+
+/* A beacon whose closing speed the line's gate lets not pass, or that is on no line, answers not.
+ */
+TEST(a_beacon_outside_of_the_gate_answers_not)
+{
+    double to[2];
+    wgs84_direct(46, 11, (100.5 - LINES / 2) * 120 / LINES, 140.5 * cell_m, &to[0], &to[1]);
+    struct lm_target t = point_at(to[0], to[1], 0, 30);
+    struct lm_target_reply reply[LM_TARGET_CANDIDATES_MAX];
+    t.flags |= LM_TARGET_IS_BEACON;
+    t.signature = 3;
+    seal_target(&t);
+    struct lm_target_line l = sector_line(46, 11, 0, 100);
+    const struct lm_target_candidates candidates = near_of(&t, 1, l.position, (uint32_t)range_m);
+    assert_int_equal(lm_target_line_replies(&candidates, &l, NULL, reply), 1);
+    assert_int_equal(reply[0].code, 3);
+    assert_int_equal(reply[0].cell, 140);
+    l.gate_mm_s[0] = 5000;
+    l.gate_mm_s[1] = 20000;
+    assert_int_equal(lm_target_line_replies(&candidates, &l, NULL, reply), 0);
+}
+
 /* ---- choice ---- */
 
 TEST(no_more_are_chosen_than_there_is_room_for_and_the_rest_is_counted)

@@ -471,6 +471,62 @@ TEST(layover_brings_a_body_nearer_by_its_height_times_the_lean)
 
 /* ---- hostile records ---- */
 
+TEST(a_target_that_cannot_be_located_from_the_patch_is_left_out)
+{
+    const struct lm_target t[2] = {point_in(60, 60, 20), point_in(70, 70, 20)};
+    struct lm_patch_geometry g = geometry(46, 11, 0);
+    find_points(t, 2, &g, 0);
+    assert_int_equal(points.target_count, 2);
+    struct lm_target_candidates candidates;
+    const struct lm_target_set set = {.items = t, .count = 2};
+    const struct lm_target_query scene = {.position = g.centre, .reach_m = 20000};
+    lm_target_candidates_select(&candidates, &set, &scene);
+    g.centre.latitude += FX_BAM_DEG(4); /* 440 km */
+    lm_target_patch_set(&points, &candidates, &g);
+    assert_int_equal(points.target_count, 0);
+    assert_int_equal(points.scatterer_count, 0);
+    g.centre = (struct lm_position){FX_BAM_DEG(89.9), FX_BAM_DEG(191)}; /* across the pole */
+    candidates.candidate[0].state.position = (struct lm_position){FX_BAM_DEG(89.9), FX_BAM_DEG(11)};
+    candidates.count = 1;
+    lm_target_patch_set(&points, &candidates, &g);
+    assert_int_equal(points.target_count, 0);
+}
+
+/* It has no range, and its cell no width. */
+TEST(a_target_at_the_antenna_is_outside_of_the_patch)
+{
+    double to[2];
+    place_at(46, 11, 0, 0, -range_m, to);
+    const struct lm_target t = point_at(to[0], to[1], 0, 20);
+    const struct lm_patch_geometry g = geometry(46, 11, 0);
+    struct lm_target_candidates candidates;
+    const struct lm_target_set set = {.items = &t, .count = 1};
+    const struct lm_target_query scene = {.position = g.centre, .reach_m = 30000};
+    lm_target_candidates_select(&candidates, &set, &scene);
+    assert_int_equal(candidates.count, 1);
+    lm_target_patch_set(&points, &candidates, &g);
+    draw(&g, -60 * 256);
+    for (int k = 0; k < LINES * CELLS; k++) {
+        assert_int_equal(picture[k / CELLS][k % CELLS], NOTHING_Q8);
+    }
+}
+
+TEST(no_horizon_hides_what_stands_before_the_first_cell)
+{
+    int32_t horizon[LM_CELLS_ROOM];
+    for (int i = 0; i < LM_CELLS_ROOM; i++) {
+        horizon[i] = INT32_MAX;
+    }
+    for (int is_before = 0; is_before < 2; is_before++) {
+        const struct lm_target t = point_in(60, is_before ? -3 : 3, 20);
+        const struct lm_patch_geometry g = geometry(46, 11, 0);
+        find_points(&t, 1, &g, 0);
+        assert_int_equal(points.scatterer[0].line, 60);
+        lm_target_patch_mark_hidden(&points, 60, horizon, 30, CELLS);
+        assert_int_equal(points.scatterer[0].is_hidden, !is_before);
+    }
+}
+
 TEST(a_record_that_passes_the_check_can_be_used_in_a_patch)
 {
     struct hs_rng rng;

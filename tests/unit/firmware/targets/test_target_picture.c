@@ -126,6 +126,29 @@ TEST(a_target_in_the_corner_of_a_coarse_patch_is_shown)
 }
 
 /* Forty lines to the left of where it is, so that its line comes long after it has been shown. */
+/* A mover 500 m south of a patch's southern edge, which closes or opens at 10 m/s: the patch, made
+ * as at 250 m/s, shows it 800 m to one side or to the other. */
+TEST(a_mover_beside_a_patch_is_displaced_into_it_one_way_alone)
+{
+    static uint8_t without[SIDE][SIDE], with[SIDE][SIDE];
+    const struct lm_target_set none = {0};
+    int shown = 0;
+    tiny_map_open_soil(&map, SLOTS, &tone);
+    draw_patch(&none, without);
+    for (int way = 0; way < 2; way++) {
+        struct lm_target t = point_at(46 - (128 * 4 + 500) / 111150.0, 11, 3, 45);
+        t.heading = way == 0 ? FX_BAM_90 : FX_BAM_DEG(270);
+        t.speed_mm_s = 10000;
+        t.leg_m = 1000;
+        seal_target(&t);
+        const struct lm_target_set set = {.items = &t, .count = 1};
+        draw_patch(&set, with);
+        shown += memcmp(with, without, sizeof with) != 0;
+    }
+    assert_int_equal(shown, 1);
+    tiny_map_close(&map);
+}
+
 TEST(a_mover_that_is_hidden_where_it_stands_shows_nowhere_in_a_patch)
 {
     static uint8_t without[SIDE][SIDE], with[SIDE][SIDE];

@@ -615,6 +615,47 @@ TEST(a_target_stays_where_it_is_when_the_clock_steps)
     free_rig(r);
 }
 
+/* What has gone goes on for a while at its last speed, but not for an hour. */
+TEST(a_target_that_has_gone_does_not_coast_over_a_step_of_the_clock)
+{
+    struct rig *r = tell_in();
+    const struct lm_track *t = &r->unit.track;
+    tell_target(r);
+    run(r, 0.1);
+    command(r, (struct lm_control){.kind = LM_CONTROL_SECTOR, .sector = {LM_SECTOR_SEA, 0}});
+    command(r, (struct lm_control){.kind = LM_CONTROL_CURSOR,
+                                   .cursor = r->unit.live.live.target[0].position});
+    command(r, (struct lm_control){.kind = LM_CONTROL_TRACK});
+    for (int i = 0; i < 300 && t->state != LM_TRACK_COASTING; i++) {
+        run(r, 0.1);
+    }
+    assert_int_equal(t->state, LM_TRACK_COASTING);
+    const struct lm_position was = t->seen.position;
+    tell_clock(r, 7200000);
+    run(r, 0.3);
+    assert_int_equal(t->state, LM_TRACK_COASTING);
+    assert_int_equal(r->unit.exercise.time_us / S, 7200);
+    /* A thousand BAM are 9 m; it moves at 5 m/s. */
+    assert_in_range(t->seen.position.latitude - was.latitude + 1000, 0, 2000);
+    assert_in_range(t->seen.position.longitude - was.longitude + 1000, 0, 2000);
+    free_rig(r);
+}
+
+/* Targets follow the first step of a step of the unit, and no second one. */
+TEST(of_a_clock_that_steps_in_every_frame_targets_follow_one_step_at_a_time)
+{
+    struct rig *r = tell_in();
+    tell_clock(r, 3600000);
+    tell_target(r);
+    run(r, 0.5);
+    tell_clock(r, 7200000);
+    tell_clock(r, 10200000);
+    run(r, 0.1);
+    assert_int_equal(r->unit.exercise.time_us / S, 10200);
+    assert_in_range(reckoned_ms(r), 3000590, 3000610);
+    free_rig(r);
+}
+
 /* Over water or not: in SEA what is at the cursor is tracked, and this one is told by the bus. */
 TEST(a_live_target_is_tracked_until_it_goes)
 {

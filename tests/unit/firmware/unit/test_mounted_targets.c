@@ -222,6 +222,29 @@ TEST(a_track_goes_on_with_its_target_under_another_number_and_ends_with_its_imag
     end(w);
 }
 
+/* Of the ground, of a live target with the number of one of the image that goes, and of a number
+ * that no target has. */
+TEST(a_track_of_no_target_of_an_image_outlasts_all_images)
+{
+    static const struct lm_track tracks[] = {{.has_target = false, .index = 0},
+                                             {.has_target = true, .is_live = true, .index = 0},
+                                             {.has_target = true, .index = IMAGES * EACH}};
+    for (size_t i = 0; i < sizeof tracks / sizeof *tracks; i++) {
+        struct world *w = start();
+        struct lm_track *t = &w->rig->unit.track;
+        *t = tracks[i];
+        t->kind = LM_TRACK_FIXED;
+        t->state = LM_TRACK_COASTING;
+        t->next_us = UINT64_MAX;
+        t->seen.position = places[1];
+        tell(w, 0, 0);
+        assert_int_equal(map_of(w)->target_set.count, EACH);
+        assert_int_equal(t->state, LM_TRACK_COASTING);
+        assert_int_equal(t->index, tracks[i].index);
+        end(w);
+    }
+}
+
 /* Signature of a live target that names the first one, in the list; -1: it has none. */
 static int signature_of_live(const struct world *w)
 {

@@ -305,6 +305,39 @@ TEST(the_first_image_goes_and_comes_back_and_the_last_one_stays)
     end(w);
 }
 
+/* At its last place the board has the finer image, and none but the country at its first. */
+TEST(an_image_at_the_last_place_may_be_the_only_one)
+{
+    struct world *w = make_world();
+    struct lm_flash_part *at = w->rig->board.lent.images;
+    at[0] = w->parts[0];
+    at[LM_IMAGES_MAX - 1] = (struct lm_flash_part){w->parts[1].offset, 0};
+    start_unit(w);
+    tell(w, LM_IMAGES_MAX, w->parts[1].bytes);
+    goes(w, 0);
+    run(w->rig, 0.1);
+    const struct lm_unit_map *m = &w->rig->unit.map;
+    assert_int_equal(m->image_count, 1);
+    assert_int_equal(m->db.base, w->parts[1].offset);
+    assert_int_equal(m->db.shift0, 10);
+    end(w);
+}
+
+TEST(a_map_without_a_list_of_places_is_the_image_at_the_start_of_the_flash)
+{
+    static struct lm_unit_map map;
+    struct rig *r = make_rig();
+    const struct lm_unit_map_lent lent = {.flash = &r->board.flash.port,
+                                          .tile_pool = r->pool,
+                                          .tile_pool_bytes = sizeof r->pool,
+                                          .flash_poll_limit = 1000};
+    assert_int_equal(lm_unit_map_open(&map, &lent), LM_OK);
+    assert_true(map.is_usable);
+    assert_int_equal(map.image_count, 1);
+    assert_int_equal(map.images[0].base, 0);
+    free_rig(r);
+}
+
 TEST(the_radar_of_an_image_that_has_gone_is_flown_on_and_the_image_may_come_back)
 {
     struct lm_radar radar = lm_radar_default;

@@ -733,3 +733,12 @@ TEST(there_is_nothing_to_range_where_the_map_ends)
     assert_int_equal(track_of(r)->loss, LM_TRACK_NOTHING);
     free_rig(r);
 }
+
+TEST(a_track_that_is_off_stays_as_it_is)
+{
+    static const struct lm_track_scene nothing;
+    struct lm_track t = {.state = LM_TRACK_OFF, .loss = LM_TRACK_WEAK, .number = 5};
+    const struct lm_track before = t;
+    lm_track_step(&t, &nothing, 1000000);
+    assert_memory_equal(&t, &before, sizeof t);
+}

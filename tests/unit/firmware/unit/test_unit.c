@@ -629,6 +629,27 @@ TEST(a_position_of_another_sender_starts_the_picture_anew_and_sends_the_cursor_h
     free_rig(r);
 }
 
+/* Whatever is first in the same step. */
+TEST(a_cursor_that_goes_home_while_the_aircraft_jumps_is_at_home)
+{
+    enum { OSB_HOME = 9, STEPS = 26 }; /* the bus tells a position every 25 steps */
+    struct rig *r = fly_rig();
+    for (uint32_t step = 0; step < STEPS; step++) {
+        command(r, (struct lm_control){.kind = LM_CONTROL_CURSOR,
+                                       .cursor = {FX_BAM_DEG(46), FX_BAM_DEG(221) / 20}});
+        run(r, 0.1);
+        assert_false(r->unit.cursor.is_home);
+        const uint32_t jumps = r->unit.nav.position_jumps;
+        r->bus.jump_degrees += step % 2 ? 0.1 : -0.1;
+        run(r, step * STEP_US * 1e-6);
+        press(r, OSB_HOME);
+        run(r, 0.1);
+        assert_true(r->unit.nav.position_jumps > jumps);
+        assert_true(r->unit.cursor.is_home && r->unit.cursor.is_placed);
+    }
+    free_rig(r);
+}
+
 TEST(a_radar_table_that_breaks_its_contract_is_refused)
 {
     struct rig *r = make_rig();

@@ -1,0 +1,80 @@
+/* What a track sees of the map where the map has nothing, or says another thing near by than from
+ * far. */
+#include "check.h"
+#include "hs/angle.h"
+#include "lm/level.h"
+#include "tiny_map.h"
+#include "track_sight.h"
+
+#include <math.h>
+
+enum { TILES = 600 };
+
+static struct tiny_map map;
+static struct lm_scan_line line;
+
+static struct tiny_cell soil(void *ctx, const struct tiny_place *p)
+{
+    (void)ctx;
+    return (struct tiny_cell){-20, p->east_m > 200 ? TINY_NONE : TINY_SOIL, 0};
+}
+
+/* A plain at 500 m with a canyon of 57 m along a meridian. Where cells are three times as wide, it
+ * is no more than a shallow valley. */
+static double canyon_m(void *ctx, const struct tiny_place *p)
+{
+    const double middle_deg = *(const double *)ctx;
+    const double away_posts = (p->longitude_deg - middle_deg) / 360 * 4294967296.0 / 512;
+    return fabs(away_posts) <= 6 ? 0 : 500;
+}
+
+TEST(ground_without_data_and_off_the_map_returns_nothing)
+{
+    struct tiny_spec spec = tiny_spec_at(46, 11);
+    spec.rows = spec.columns = 3;
+    spec.cell = soil;
+    tiny_map_open(&map, &spec, 40);
+    static const double east[] = {10.998, 11.004, 20};
+    for (int i = 0; i < 3; i++) {
+        const struct lm_position at = {hs_bam(46), hs_bam(east[i])};
+        (void)lm_track_ground_db_q8(&map.tiles, at);
+        tiny_map_read_tiles(&map);
+        const int32_t db_q8 = lm_track_ground_db_q8(&map.tiles, at);
+        assert_int_equal(db_q8, i == 0 ? -20 * 256 : LM_LEVEL_SHADOW);
+    }
+    tiny_map_close(&map);
+}
+
+/* From 800 m the nose points 3 degrees down, along the canyon. By the coarse LOD there is a plain 6
+ * to 10 km ahead. Near by there is nothing as high: the canyon's floor is 15 km ahead. */
+TEST(ground_that_is_there_from_far_alone_is_ranged_where_it_was_found)
+{
+    const fx_bam_t middle = hs_bam(11) & ~(fx_bam_t)511;
+    double middle_deg = hs_degrees(middle);
+    struct tiny_spec spec = tiny_spec_at(46.05, 11);
+    spec.rows = 50;
+    spec.columns = 3;
+    spec.cell = soil;
+    spec.elevation_m = canyon_m;
+    spec.ctx = &middle_deg;
+    spec.level_count = 6;
+    tiny_map_open(&map, &spec, TILES);
+    const struct lm_track_scene s = {
+        .radar = &lm_radar_default,
+        .tiles = &map.tiles,
+        .platform = {.position = {hs_bam(46), middle}, .height_m_q10 = 800 * 1024},
+        .pitch = -(int32_t)FX_BAM_DEG(3),
+        .range_index = 1,
+        .line = &line};
+    struct lm_position at = {0, 0};
+    int32_t elevation_m_q10;
+    for (int i = 0; i < 4; i++) {
+        (void)lm_track_ahead(&s, &at, &elevation_m_q10);
+        tiny_map_read_tiles(&map);
+    }
+    assert_true(lm_track_ahead(&s, &at, &elevation_m_q10));
+    const double ahead_m = (hs_degrees(at.latitude) - 46) * 111150;
+    print_message("# ground at %.0f m\n", ahead_m);
+    assert_true(ahead_m > 5700 && ahead_m < 12000);
+    tiny_map_close(&map);
+}
