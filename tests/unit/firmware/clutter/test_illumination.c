@@ -497,3 +497,15 @@ TEST(no_data_is_darker_than_any_noise_floor)
     }
     assert_true(abs(s.lit.level_db_q8[100] + 20 * 256) < 64);
 }
+
+/* A radar table and a map of numbers that their checks let pass: ground 16 km below the sea, cells
+ * of 4 km, and a beam that looks nearly straight down. */
+TEST(a_rise_beyond_the_format_lights_the_first_cell)
+{
+    static struct scene s;
+    make_flat(&s, -16000);
+    set_grid(&s, 256, 4095, 20, 500, -16000);
+    assert_int_equal(s.grid.flat_rise, INT32_MAX);
+    run(&s, LM_HORIZON_OPEN);
+    assert_true(is_lit(&s, 0));
+}

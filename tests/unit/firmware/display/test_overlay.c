@@ -255,6 +255,12 @@ TEST(text_is_cut_where_it_does_not_fit_and_numbers_are_exact)
     assert_int_equal(t.length, LM_TEXT_MAX);
 }
 
+TEST(a_flag_that_does_not_exist_has_the_word_of_the_first)
+{
+    assert_string_equal(lm_flag_word(LM_FLAGS), lm_flag_word(0));
+    assert_string_equal(lm_flag_word(UINT32_MAX), lm_flag_word(0));
+}
+
 TEST(each_flag_has_a_word_of_its_own_on_the_glass)
 {
     struct lm_palette palette;

@@ -517,3 +517,17 @@ TEST(a_picture_is_moved_whole_in_every_direction_and_black_comes_in)
         close_glass(&g);
     }
 }
+
+/* Nearer than half its side, a patch would begin behind the antenna. */
+TEST(a_row_behind_the_antenna_is_as_wide_as_a_row_can_be)
+{
+    static struct lm_patch_painter p;
+    const struct lm_frame frame = lm_frame_of_display(480, 480);
+    const struct lm_patch_fan fan = {128, 64, 16 * 20 * 256, 20 * 256};
+    lm_patch_painter_set(&p, &frame, &fan);
+    for (uint32_t row = 0; row < p.square.height_px; row++) {
+        assert_true(p.step_q20[row] > 0 && p.step_q20[row] <= LM_K_LINE_Q20 << 6);
+        assert_true(row == 0 || p.step_q20[row] <= p.step_q20[row - 1]);
+    }
+    assert_int_equal(p.step_q20[0], LM_K_LINE_Q20 << 6);
+}

@@ -196,3 +196,34 @@ TEST(the_place_of_the_origin_is_the_origin)
         assert_memory_equal(&place, &from.position, sizeof place);
     }
 }
+
+TEST(a_window_far_beside_is_out_of_sight_as_one_far_ahead_is)
+{
+    const struct lm_frame frame = lm_frame_of_display(WIDTH, HEIGHT);
+    const struct lm_view ahead = window_of(&frame, 0, 240000),
+                         beside = window_of(&frame, 90, 240000);
+    assert_int_equal(ahead.at.x, ahead.middle.x);
+    assert_int_equal(ahead.at.y, ahead.middle.y + LM_VIEW_APEX_FAR_PX);
+    assert_memory_equal(&ahead.at, &beside.at, sizeof ahead.at);
+}
+
+TEST(no_place_is_farther_than_any_range)
+{
+    const struct lm_frame frame = lm_frame_of_display(WIDTH, HEIGHT);
+    const struct lm_view_from from = from_here();
+    const struct lm_view v = lm_view_of_patch(&frame, from.position, from.up, 1024, 100000);
+    double farther_m = 0;
+    for (int32_t out = 100; out <= LM_DRAW_FAR; out += 100) {
+        uint32_t distance_m_q8;
+        fx_bam_t azimuth;
+        const struct lm_position at =
+            lm_view_position(&v, (struct lm_offset){out * 256, -out * 256});
+        lm_geo_inverse(from.position, at, &distance_m_q8, &azimuth);
+        assert_true(distance_m_q8 / 256.0 >= farther_m - 20000);
+        assert_true(distance_m_q8 / 256.0 < 600000);
+        farther_m = distance_m_q8 / 256.0;
+    }
+    const struct lm_position a = lm_view_position(&v, (struct lm_offset){2000 * 256, 0});
+    const struct lm_position b = lm_view_position(&v, (struct lm_offset){LM_DRAW_FAR * 256, 0});
+    assert_memory_equal(&a, &b, sizeof a);
+}
