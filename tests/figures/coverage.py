@@ -8,8 +8,8 @@ A condition counts when some pair of runs shows that it alone turned the decisio
 coverage, as DO-178C asks it at level A). An inline function of a header is in many objects and counts once:
 what any of them shows is shown.
 
-What is missing goes to BUILD/missing.txt, one place a line. Places of which tests/figures/coverage-argued.txt tells why
-nothing can reach them go to BUILD/argued.txt, each with its reason; shares count them as not reached.
+What is missing goes to BUILD/missing.txt, one place a line. Places of which tests/figures/coverage-argued.txt tells
+why nothing can reach them go to BUILD/argued.txt, each with its reason; shares count them as not reached.
 Ends with 1 where a share is below its floor in tests/figures/coverage-floors.txt, or where an argument does not fit: its
 code is not in the file, or is there more than once, or tests have reached all of it.
 """
@@ -24,7 +24,7 @@ import figures
 
 KINDS = {"lines": "lines", "branches": "branches", "mcdc": "conditions (MC/DC)"}
 LAYERS = ("fixed", "firmware")
-NEGATIVE = 1 << 62  # llvm-cov subtracts counts; those of tests with threads may be short of a few, and what is left below 0
+NEGATIVE = 1 << 62  # llvm-cov subtracts counts; those of tests with threads may be short of a few, and the rest below 0
 FLOORS = Path("tests/figures/coverage-floors.txt")
 ARGUED = Path("tests/figures/coverage-argued.txt")
 
@@ -72,7 +72,7 @@ class Source:
 
 
 def run_lines(segments):
-    """(lines that were run, lines with code), by the rule of llvm-cov's own summary."""
+    """(lines that were run, lines with code), all objects together, as llvm-cov shows them."""
     run, mapped, inside = 0, 0, None  # inside: the segment that a line begins in
     by_line = {}
     for segment in segments:
@@ -143,7 +143,7 @@ def missing(counted, source):
 
 
 def arguments():
-    """(path, code, reason) of each entry of ARGUED. Code is a piece of the file, the argued part of it between ` and `."""
+    """(path, code, reason) of each entry of ARGUED. Code is a piece of the file, what is argued of it in backquotes."""
     entries = []
     for line in ARGUED.read_text().splitlines():
         if line.startswith((" ", "\t")):

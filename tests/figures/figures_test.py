@@ -1,10 +1,13 @@
-"""The list of goals, what the commands measure, and the table of README.md belong together. Prints TAP."""
+"""The list of goals, what the commands measure, and the table of README.md belong together; so do the code and what is
+argued of its coverage. Prints TAP."""
 import re
 import subprocess
 import sys
+import tempfile
 from pathlib import Path
 
 sys.path.insert(0, str(Path(__file__).parent.parent / "zcu102"))
+import coverage  # noqa: E402
 import figures  # noqa: E402
 from tap import Tap  # noqa: E402
 
@@ -62,6 +65,53 @@ def check_columns(tap, goals):
            re.search(rf"{goal.limit:g} missed +{re.escape(figures.text(released))} +{goal.limit + 1:g}", row), row or out)
 
 
+def check_arguments(tap):
+    entries = coverage.arguments()
+    there = {path: coverage.Source(Path("build"), path) for path, _, _ in entries if Path(path).exists()}
+    lost = [f"{path}: {code}" for path, code, reason in entries
+            if not reason or path not in there or coverage.argued_span(code, there[path]) is None]
+    tap.ok("each argument is about code that stands once in its file, and says why", not lost, *lost)
+
+
+CODE = """int f(int a, int b)
+{
+    return a > 0 &&
+           b > 0;
+}
+int g(int b) { return b > 0; }
+"""
+
+
+def settled(folder, entries, offsets):
+    """What is left, argued and wrong of places of CODE, by these entries."""
+    path = folder / "f.c"
+    path.write_text(CODE)
+    coverage.ARGUED = folder / "argued.txt"
+    coverage.ARGUED.write_text(entries.replace("FILE", str(path)))
+    return coverage.settle({str(path): [(offset, "never true") for offset in offsets]},
+                           {str(path): coverage.Source(folder, path)})
+
+
+def check_settling(tap):
+    at = CODE.index("b > 0;")
+    entry = "FILE: a > 0 && `b > 0`;\n    b is 7\n"
+    before = coverage.ARGUED
+    with tempfile.TemporaryDirectory() as name:
+        folder = Path(name)
+        left, argued, wrong = settled(folder, entry, [at])
+        tap.ok("a place is argued by its code, however its lines are broken",
+               not left and not wrong and len(argued) == 1 and "f.c:4:12: never true" in argued[0][1], left, argued, wrong)
+        left, argued, wrong = settled(folder, entry, [at, CODE.index("a > 0")])
+        tap.ok("the code around it is not", len(left) == 1 and len(argued) == 1 and not wrong, left, argued, wrong)
+        for what, entries in (("is reached", entry), ("has no reason", entry.split("\n", 1)[0]),
+                              ("is there twice", "FILE: `b > 0`;\n    why\n"),
+                              ("is not there", "FILE: `c > 0`;\n    why\n")):
+            places = [] if what == "is reached" else [at]
+            left, argued, wrong = settled(folder, entries, places)
+            tap.ok(f"an argument about code that {what} is told", len(wrong) == 1 and len(left) == len(places), wrong)
+    coverage.ARGUED = before
+
+
 def main():
     tap = Tap()
     goals = figures.read_goals()
@@ -69,6 +119,8 @@ def main():
     check_now(tap, goals)
     check_readme(tap)
     check_columns(tap, goals)
+    check_arguments(tap)
+    check_settling(tap)
     return tap.end()
 
 

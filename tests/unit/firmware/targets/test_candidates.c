@@ -169,6 +169,17 @@ TEST(of_a_target_that_goes_away_reach_ends_once)
     assert_int_equal(before, 0);
 }
 
+/* What comes first asks for north and east, each by itself: reach is a circle, not that square. */
+TEST(a_target_in_the_corner_of_the_square_around_the_reach_is_not_met)
+{
+    put(95000, 0, 0, 0);
+    assert_int_equal(met_within(100000), 1);
+    put(0, 95000, 0, 0);
+    assert_int_equal(met_within(100000), 1);
+    put(95000, 95000, 0, 0);
+    assert_int_equal(met_within(100000), 0);
+}
+
 TEST(a_live_target_without_room_is_counted_as_left_out)
 {
     struct lm_target items[LM_TARGET_CANDIDATES_MAX];
