@@ -46,9 +46,9 @@ static void unlink_slot(struct lm_tile_cache *c, uint16_t victim)
     *link = s->next;
 }
 
-/* A free slot, or the one that was used longest ago, unlinked from its chain. Called between two
- * reads, so that no slot is being read. A coarsest LOD that is resident whole stays. It has half of
- * the slots at most, so LM_SLOT_NONE does not happen. If it did, nothing would be written. */
+/* A free slot, or the one that was used longest ago, unlinked from its chain. A coarsest LOD that
+ * is resident whole and the slot being read stay. lm_tile_cache_init leaves more slots that are
+ * neither, so LM_SLOT_NONE does not happen. If it did, nothing would be written. */
 static uint16_t take_slot(struct lm_tile_cache *c)
 {
     const uint8_t pinned = c->is_top_resident ? coarsest_lod(c) : LM_DB_LODS_MAX;
@@ -61,7 +61,7 @@ static uint16_t take_slot(struct lm_tile_cache *c)
         }
         const uint32_t age = c->clock - s->last_use;
         const bool is_pinned = s->state == LM_SLOT_RESIDENT && s->lod == pinned;
-        if (!is_pinned && (best == LM_SLOT_NONE || age > best_age)) {
+        if (!is_pinned && s->state != LM_SLOT_READING && (best == LM_SLOT_NONE || age > best_age)) {
             best = (uint16_t)i;
             best_age = age;
         }
