@@ -222,7 +222,7 @@ static inline bool next_run(struct walk *w, uint32_t k)
             return false;
         }
     }
-    if (k == w->east.end) { /* and not behind the last cell, where the row ends, too */
+    if (k == w->east.end) { /* behind the last cell both runs end, which is seen above */
         start_run(&w->east, k, w->cells);
     }
     return true;

@@ -10,8 +10,8 @@ what any of them shows is shown.
 
 What is missing goes to BUILD/missing.txt, one place a line. Places of which tests/figures/coverage-argued.txt tells
 why nothing can reach them go to BUILD/argued.txt, each with its reason; shares count them as not reached.
-Ends with 1 where a share is below its floor in tests/figures/coverage-floors.txt, or where an argument does not fit: its
-code is not in the file, or is there more than once, or tests have reached all of it.
+Ends with 1 where a place is missing; where a share is below its floor in tests/figures/coverage-floors.txt; or where an
+argument does not fit: its code is not in the file, or is there more than once, or tests have reached all of it.
 """
 import bisect
 import json
@@ -218,6 +218,7 @@ def main():
     print_rooms(files, left, argued)
     print(f"\n{len(left)} places are missing, listed in {build}/missing.txt; "
           f"{len(argued)} are argued in {ARGUED}, listed in {build}/argued.txt")
+    failures += [f"coverage: {place}" for _, place in left]
     rows = []
     least = floors()
     for layer in LAYERS:
