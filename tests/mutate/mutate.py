@@ -5,9 +5,9 @@
 
 Draws N changes of one token, evenly over the files of firmware and fixed (tables, the font and vector twins excepted);
 those that the compiler refuses, or of which it makes the same object, are drawn anew. Each is compiled in a folder of
-its own, linked into the tests that use the file, and these are run, the cheapest first, until one fails; one that takes
-too long or too much memory has failed. Prints a table by room and the survivors, which it leaves in BUILD/mutate, too.
-The tree is never written to.
+its own, linked into the tests that run its line (reach.py), and these are run, the cheapest first, until one fails; one
+that takes too long or too much memory has failed. Prints a table by room and the survivors, which it leaves in
+BUILD/mutate, too. The tree is never written to.
 
 --planted reads changes from a file of blocks instead of drawing them: path, lines "- as it is", "+ as it would be".
 tests/mutate/judged.txt has blocks of survivors that change nothing, or nothing that can be seen, with the reason.
@@ -16,6 +16,7 @@ Ends with 1 if less than --least percent of what could be seen is caught.
 import argparse
 import difflib
 import random
+import re
 import sys
 import threading
 import time
@@ -24,6 +25,7 @@ from typing import NamedTuple
 
 import changes
 import programs
+import reach
 
 JUDGED = Path("tests/mutate/judged.txt")
 WITHOUT = {"firmware/base/font.c", "firmware/table/radar.c"}
@@ -50,6 +52,15 @@ class Result(NamedTuple):
 
 def flat(text):
     return " ".join(text.split())
+
+
+def lines_run(mutant):
+    """The lines of which one must be run for a change to matter. What a label `case` picks, its `switch` runs."""
+    lines = range(mutant.line, mutant.line + max(1, len(mutant.old.splitlines())))
+    if not re.search(r"\bcase\b", mutant.old):
+        return lines
+    text = Path(mutant.source).read_text().splitlines()
+    return [n for n in range(1, mutant.line + 1) if re.search(r"\bswitch \(", text[n - 1])][-1:] or lines
 
 
 def read_blocks(path):
@@ -114,6 +125,7 @@ class Campaign:
 
     def __init__(self, build, mutants, count, minutes):
         self.build, self.mutants, self.wanted = build, mutants, count
+        self.reach = reach.Reach(build, build.scratch)
         self.ends = time.monotonic() + 60 * minutes
         self.judged, self.results, self.same, self.failure = read_judged(), [], 0, None
         self.draw_lock, self.print_lock = threading.Lock(), threading.Lock()
@@ -146,10 +158,13 @@ class Campaign:
         verdict = self.judged.get((mutant.source, flat(mutant.old), flat(mutant.new)))
         if verdict:
             return Result(mutant, verdict, "", 0)
-        tests = self.build.programs_of(mutant.source)
-        for number, test in enumerate(tests, 1):
+        lines, number = lines_run(mutant), 0
+        for test in self.build.programs_of(mutant.source):
             if time.monotonic() >= self.ends:
                 return None
+            if not self.reach.may_run(test, mutant.source, lines, place):
+                continue
+            number += 1
             is_sanitized, with_object = self.build.is_sanitized(test), target
             if is_sanitized:
                 with_object = self.build.compile(mutant.source, mutant.text, True, place / "changed")
@@ -158,8 +173,9 @@ class Campaign:
             failure, _ = programs.run(program, place, limit, is_sanitized, programs.is_golden(test))
             if failure:
                 self.build.check_plain(test, place)
+                self.build.caught(mutant.source, test)
                 return Result(mutant, "caught", f"{Path(test).name}: {failure}", number)
-        return Result(mutant, "survived", "", len(tests))
+        return Result(mutant, "survived", "" if number else "no test runs it", number)
 
     def work(self, place):
         try:

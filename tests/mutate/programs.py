@@ -14,6 +14,7 @@ import threading
 from pathlib import Path
 
 MEMORY_BYTES = 2 << 30
+LINK_SECONDS = 0.1
 PICTURES = Path("tests/golden/pictures.golden")
 QUIET = {**os.environ, "CCACHE_DISABLE": "1"}
 
@@ -29,6 +30,7 @@ class Build:
             elif words and words[-1].startswith(f"{folder}/bin/tests/"):
                 self.links[words[-1]] = words
         self.symbols = {program: self._globals(program) for program in self.links}
+        self.counted_seconds, self.catches = {}, {}  # of a run that counted; (source, program) -> errors it caught
         known = self.scratch / "times.json"
         self.times = json.loads(known.read_text()) if known.exists() else {}
         self.lock = threading.Lock()
@@ -60,24 +62,35 @@ class Build:
     # ---- programs ----
 
     def programs_of(self, source):
-        """Tests that link a source, the cheapest first; those of its own folder before all others."""
+        """Tests that link a source, the cheapest first; those of its own folder, and those that caught errors, sooner."""
         own = self._globals(self._object(source, False))
         linking = [p for p, symbols in self.symbols.items() if own & symbols]
         room = f"/{Path(source).parent}/".replace("/fixed/src/", "/fixed/")
-        return sorted(linking, key=lambda p: (self.seconds(p) * (0.1 if room in p else 1), p))
+
+        def cost(program):
+            share = (0.1 if room in program else 1) / (1 + self.catches.get((source, program), 0))
+            return (LINK_SECONDS + self.seconds(program)) * share, program
+        return sorted(linking, key=cost)
+
+    def caught(self, source, program):
+        with self.lock:
+            self.catches[source, program] = self.catches.get((source, program), 0) + 1
 
     def _key(self, program):
         return f"{program} {Path(program).stat().st_mtime_ns}"
 
     def seconds(self, program):
-        """What a test took here, or else with tests/run.sh, or else a guess."""
+        """What a test took here, or else while it counted, or else with tests/run.sh, or else a guess."""
         log = self.folder / "test-logs" / program.removeprefix(f"{self.folder}/bin/").replace("/", "-")
         if self._key(program) in self.times:
             return self.times[self._key(program)]
+        if program in self.counted_seconds:
+            return self.counted_seconds[program]
         return float(log.with_suffix(".seconds").read_text()) if log.with_suffix(".seconds").exists() else 5.0
 
     def limit_seconds(self, program):
-        return max(10.0, 4 * self.seconds(program)) + (0 if self._key(program) in self.times else 60)
+        is_known = self._key(program) in self.times or (program in self.counted_seconds and not self.is_sanitized(program))
+        return max(4.0, 5 * self.seconds(program)) + (0 if is_known else 60)
 
     def check_plain(self, program, place):
         """A test that fails catches nothing by failing: run it once as it is."""
@@ -121,7 +134,7 @@ def is_golden(program):
     return Path(program).name == "golden"
 
 
-def run(program, place, limit_seconds, is_sanitized=False, has_pictures=False):
+def run(program, place, limit_seconds, is_sanitized=False, has_pictures=False, more={}):
     """("" if the program passed or else what ended it, its seconds of processor). Ends at the first failure."""
     def bound():
         os.setsid()
@@ -131,7 +144,7 @@ def run(program, place, limit_seconds, is_sanitized=False, has_pictures=False):
         if not is_sanitized:  # the sanitizers' shadow is larger than any limit, and little of it is used
             resource.setrlimit(resource.RLIMIT_AS, (MEMORY_BYTES, MEMORY_BYTES))
 
-    environment = {**os.environ, "CMOCKA_MESSAGE_OUTPUT": "TAP", "BUILD": str(place),
+    environment = {**os.environ, "CMOCKA_MESSAGE_OUTPUT": "TAP", "BUILD": str(place), **more,
                    "ASAN_OPTIONS": f"hard_rss_limit_mb={MEMORY_BYTES >> 20}"}
     process = subprocess.Popen([str(program)], stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, errors="replace",
                                stderr=subprocess.DEVNULL, env=environment, preexec_fn=bound)

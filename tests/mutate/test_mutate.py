@@ -1,4 +1,6 @@
 """Changes, draws and verdicts of mutate.py on sources of a few lines and programs that misbehave. Prints TAP."""
+import os
+import subprocess
 import sys
 import tempfile
 import traceback
@@ -8,6 +10,7 @@ sys.path.insert(0, str(Path(__file__).parent))
 import changes
 import mutate
 import programs
+import reach
 
 SOURCE = """/* a < b + 1 */
 #define TWO 2
@@ -131,12 +134,109 @@ def a_program_that_fails_hangs_or_eats_is_caught(folder):
     assert verdict("print('ok'); x = bytearray(3 << 30)") == "ended with status 1"
 
 
+COUNTED = """int table[2] = {1, 2};
+int half(int a)
+{
+    return a / 2;
+}
+int twice(int a)
+{
+    switch (a) {
+    case 7:
+        return 0;
+    default:
+        return a * 2;
+    }
+}
+"""
+MAIN = "#include <stdio.h>\nint half(int a); int main(void) { puts(\"ok 1 - runs\"); return half(0); }\n"
+
+
+def built(folder):
+    """A source of the firmware, in a tree of its own, with a program that runs a part of it."""
+    for place in ("firmware/room", "build/bin/tests", "build/firmware/room"):
+        (folder / place).mkdir(parents=True)
+    (folder / "firmware/room/half.c").write_text(COUNTED)
+    (folder / "test.c").write_text(MAIN)
+    commands = ("gcc -c firmware/room/half.c -o build/firmware/room/half.o\n"
+                "gcc -c test.c -o build/test.o\n"
+                "ar rcs build/lib.a build/firmware/room/half.o\n"
+                "gcc build/test.o -Wl,--start-group build/lib.a -Wl,--end-group -lm -lm -o build/bin/tests/test\n")
+    for command in commands.splitlines():
+        subprocess.run(command.split(), check=True)
+    (folder / "build/mutate").mkdir(exist_ok=True)
+    return programs.Build("build", "build/mutate", commands)
+
+
+def in_tree(test):
+    """In the folder of a tree, as the scripts are run in that of the project."""
+    def run():
+        before = Path.cwd()
+        with tempfile.TemporaryDirectory() as folder:
+            os.chdir(folder)
+            try:
+                test(Path(folder))
+            finally:
+                os.chdir(before)
+    run.__name__ = test.__name__
+    return run
+
+
+def asked(build, line):
+    """Whether the program may run a line."""
+    place = programs.make_place("build", Path("build/mutate/worker-0"))
+    return reach.Reach(build, build.scratch).may_run("build/bin/tests/test", "firmware/room/half.c", [line], place)
+
+
+@in_tree
+def a_test_is_spared_the_lines_that_it_does_not_run(folder):
+    build = built(folder)
+    assert asked(build, 4), "a line that it runs"
+    assert not asked(build, 12), "a line of a function that is not called"
+    assert asked(build, 1), "a table has no code: nothing is known"
+
+
+@in_tree
+def a_test_is_counted_again_when_it_or_the_source_has_changed(folder):
+    build = built(folder)
+    assert not asked(build, 12)
+    (folder / "test.c").write_text(MAIN.replace("half", "twice"))
+    for command in (build.compiles["test.c"]["build/test.o"], build.links["build/bin/tests/test"]):
+        subprocess.run(command, check=True)
+    assert asked(build, 12) and not asked(build, 4)
+    (folder / "firmware/room/half.c").write_text("\n" + COUNTED)
+    assert asked(build, 13) and not asked(build, 5)
+
+
+@in_tree
+def without_clang_every_test_may_run_a_line(folder):
+    build, clang = built(folder), reach.CLANG
+    reach.CLANG = "no-such-compiler"
+    try:
+        assert asked(build, 12)
+    finally:
+        reach.CLANG = clang
+
+
+@in_tree
+def a_label_is_run_where_its_switch_is(folder):
+    built(folder)
+
+    def lines(number, old):
+        return list(mutate.lines_run(mutate.Mutant("firmware/room/half.c", "", number, old, "", "constant")))
+    assert lines(9, "    case 7:") == [8]
+    assert lines(10, "        return 0;") == [10]
+    assert lines(2, "int half(int a)\n{") == [2, 3]
+
+
 def main():
     tests = [each_kind_changes_what_it_says, comments_strings_and_directives_stay, numbers_keep_their_form,
              a_chain_of_choices_is_swapped_link_by_link, a_seed_draws_the_same_and_each_change_once,
              a_survivor_can_be_planted_again, what_is_planted_must_stand_in_its_file,
              judged_survivors_have_a_verdict_a_reason_and_a_line_that_is_there,
-             a_program_that_fails_hangs_or_eats_is_caught]
+             a_program_that_fails_hangs_or_eats_is_caught, a_test_is_spared_the_lines_that_it_does_not_run,
+             a_test_is_counted_again_when_it_or_the_source_has_changed, without_clang_every_test_may_run_a_line,
+             a_label_is_run_where_its_switch_is]
     print(f"1..{len(tests)}")
     failed = 0
     for number, test in enumerate(tests, 1):
