@@ -331,6 +331,20 @@ TEST(the_bars_of_the_test_pattern_have_no_gaps)
     free_surface(&done);
 }
 
+TEST(below_the_sixteen_greys_of_the_test_pattern_are_all_256_in_order)
+{
+    struct lm_palette p;
+    lm_palette_set(&p, &(struct lm_palette_config){.tint = 1});
+    struct lm_surface s = make_surface(512, 512);
+    const struct lm_frame frame = lm_frame_of_display(512, 512);
+    lm_overlay_test_pattern(&(struct lm_glass){.surface = s, .frame = &frame, .palette = &p});
+    const uint32_t *greys = s.pixels + 160 * s.stride_px;
+    for (uint32_t x = 0; x < 512; x++) {
+        assert_int_equal(greys[x], p.picture[x / 2]);
+    }
+    free_surface(&s);
+}
+
 TEST(the_grid_of_the_test_pattern_reaches_from_edge_to_edge_and_its_circles_are_closed)
 {
     struct lm_palette p;
