@@ -105,3 +105,12 @@ TEST(two_keys_at_once_do_not_disturb_each_other)
     assert_int_equal(acts[LM_BUTTONS], 6); /* 0, 0.5, 0.6, 0.7, 0.8, 0.9 */
     assert_int_equal(acts[1], 5);
 }
+
+TEST(a_key_let_go_at_the_very_moment_of_its_long_meaning_has_no_short_one)
+{
+    struct lm_keys keys = {0};
+    struct lm_press press;
+    assert_false(lm_keys_down(&keys, BUTTON, LM_KEY_HAS_LONG, 0));
+    assert_true(lm_keys_held(&keys, LM_KEY_LONG_US, &press) && press.is_long);
+    assert_false(lm_keys_up(&keys, BUTTON, LM_KEY_LONG_US));
+}

@@ -113,3 +113,12 @@ TEST(a_page_of_bytes_has_no_field_of_view_and_no_scale_that_its_mode_has_not)
     }
     assert_true(refused_fovs > 0 && refused_ranges > 0);
 }
+
+TEST(reset_has_tone_palette_and_beam_taken_anew)
+{
+    struct lm_page p = page_in(LM_FORMAT_CNTL, LM_PICTURE_SECTOR, LM_FOV_NORM);
+    p.is_pencil = p.palette.is_night = true;
+    p.black_db = 3;
+    assert_int_equal(press_key(&p, 10, false), LM_EFFECT_TONE | LM_EFFECT_PALETTE | LM_EFFECT_BEAM);
+    assert_false(p.is_pencil || p.palette.is_night || p.black_db != 0);
+}
