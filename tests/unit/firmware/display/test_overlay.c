@@ -331,6 +331,23 @@ TEST(the_bars_of_the_test_pattern_have_no_gaps)
     free_surface(&done);
 }
 
+TEST(the_rows_of_characters_of_the_test_pattern_stand_further_apart_than_those_of_a_label)
+{
+    struct lm_palette p;
+    lm_palette_set(&p, &(struct lm_palette_config){0});
+    struct lm_surface s = make_surface(480, 480);
+    const struct lm_frame frame = lm_frame_of_display(480, 480);
+    lm_overlay_test_pattern(&(struct lm_glass){.surface = s, .frame = &frame, .palette = &p});
+    const struct lm_pen pen = lm_pen_for(&s, p.symbol);
+    static const char *const rows[] = {"XYZ", "789", ":;<=>"};
+    struct lm_point at[3];
+    for (size_t i = 0; i < 3; i++) {
+        assert_true(glass_find(&s, rows[i], p.symbol, 0, &at[i]));
+        assert_true(i == 0 || at[i].y - at[i - 1].y > lm_row_px(&pen));
+    }
+    free_surface(&s);
+}
+
 TEST(below_the_sixteen_greys_of_the_test_pattern_are_all_256_in_order)
 {
     struct lm_palette p;

@@ -227,3 +227,15 @@ TEST(no_place_is_farther_than_any_range)
     const struct lm_position b = lm_view_position(&v, (struct lm_offset){LM_DRAW_FAR * 256, 0});
     assert_memory_equal(&a, &b, sizeof a);
 }
+
+TEST(a_window_far_ahead_or_far_aside_shows_nothing_and_its_apex_stays_near_enough)
+{
+    const struct lm_frame frame = lm_frame_of_display(WIDTH, HEIGHT);
+    static const double azimuths_deg[] = {0, 90, -90, 180};
+    for (size_t i = 0; i < sizeof azimuths_deg / sizeof *azimuths_deg; i++) {
+        const struct lm_view v = window_of(&frame, azimuths_deg[i], 240000);
+        const struct lm_offset middle = lm_view_middle(&v);
+        assert_int_equal(middle.x_px_q8, 0);
+        assert_int_equal(middle.y_px_q8, LM_VIEW_APEX_FAR_PX * 256);
+    }
+}

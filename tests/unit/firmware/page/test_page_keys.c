@@ -2,6 +2,7 @@
  * page, whatever the unit makes of it. */
 #include "check.h"
 #include "lm/page.h"
+#include "page_table.h"
 
 #include <string.h>
 
@@ -121,4 +122,13 @@ TEST(reset_has_tone_palette_and_beam_taken_anew)
     p.black_db = 3;
     assert_int_equal(press_key(&p, 10, false), LM_EFFECT_TONE | LM_EFFECT_PALETTE | LM_EFFECT_BEAM);
     assert_false(p.is_pencil || p.palette.is_night || p.black_db != 0);
+}
+
+TEST(a_word_too_long_for_a_label_is_cut_at_its_fifth_letter)
+{
+    struct lm_label label;
+    memset(&label, 'x', sizeof label);
+    lm_label_set(&label, "LANDMASS", "FIVES");
+    assert_string_equal(label.line[0], "LANDM");
+    assert_string_equal(label.line[1], "FIVES");
 }
