@@ -483,3 +483,70 @@ TEST(the_length_of_long_map_cells_is_written)
         free_surface(&surface);
     }
 }
+
+/* A black glass over a patch, with the mark of what is tracked at (600, 200), in white. */
+static struct lm_surface draw_track_mark(enum lm_track_shape shape)
+{
+    struct lm_surface surface = make_surface(768, 768);
+    const struct lm_frame frame = lm_frame_of_display(768, 768);
+    const struct lm_palette palette = {.symbol = 0xFFFFFF};
+    for (uint32_t y = 0; y < 768; y++) {
+        memset(surface.pixels + y * surface.stride_px, 0, 768 * sizeof(uint32_t));
+    }
+    const struct lm_symbols symbols = {
+        .view = lm_view_of_patch(&frame, (struct lm_position){0, 0}, 0, 256, 5000),
+        .track_shape = shape,
+        .track = {600, 200}};
+    const struct lm_glass glass = {.surface = surface, .frame = &frame, .palette = &palette};
+    lm_overlay_symbols(&glass, &symbols);
+    return surface;
+}
+
+TEST(what_is_tracked_is_a_diamond_filled_to_its_edges_and_no_further)
+{
+    struct lm_surface hollow = draw_track_mark(LM_SHAPE_HOLLOW);
+    struct lm_surface filled = draw_track_mark(LM_SHAPE_FILLED);
+    int32_t rows = 0;
+    for (int32_t y = 140; y < 260; y++) {
+        int32_t first = 660, last = 539;
+        for (int32_t x = 540; x < 660; x++) {
+            if (is_drawn(&hollow, x, y)) {
+                first = x < first ? x : first;
+                last = x;
+            }
+        }
+        rows += first < last;
+        for (int32_t x = 540; x < 660; x++) {
+            assert_int_equal(is_drawn(&filled, x, y), x >= first && x <= last);
+        }
+    }
+    assert_true(rows > 40);
+    free_surface(&hollow);
+    free_surface(&filled);
+}
+
+TEST(the_box_of_a_warning_is_as_wide_on_both_sides_of_its_words_on_any_glass)
+{
+    struct lm_palette palette;
+    lm_palette_set(&palette, &(struct lm_palette_config){0});
+    for (uint16_t side = 256; side <= 1024; side += 256) {
+        struct lm_surface s = make_surface(side, side);
+        const struct lm_frame frame = lm_frame_of_display(side, side);
+        const struct lm_glass g = {.surface = s, .frame = &frame, .palette = &palette};
+        lm_overlay_blank(&g);
+        lm_overlay_warnings(&g, 1, &reasons);
+        const struct lm_pen pen = lm_pen_for(&s, palette.warning);
+        struct lm_point at;
+        assert_true(glass_find(&s, lm_flag_word(0), palette.warning, palette.ink, &at));
+        const int32_t end = at.x + lm_text_width(&pen, lm_flag_word(0)) - pen.dot_px;
+        int32_t left = side, right = 0; /* of the line above the words */
+        for (int32_t x = 0; x < side; x++) {
+            if (s.pixels[(at.y - 3 * pen.dot_px) * (int32_t)s.stride_px + x] == palette.warning) {
+                left = x < left ? x : left;
+                right = x;
+            }
+        }
+        assert_in_range(abs((at.x - left) - (right - end)), 0, pen.dot_px);
+        free_surface(&s);
+    }
+}
