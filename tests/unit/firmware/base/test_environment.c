@@ -39,3 +39,22 @@ TEST(one_more_of_anything_is_refused_however_little_there_is_of_the_rest)
         assert_int_equal(lm_environment_check(&e), LM_ERR_RANGE);
     }
 }
+
+TEST(rain_and_jammers_may_stand_on_a_pole_and_not_beyond)
+{
+    static const struct {
+        uint32_t latitude;
+        int status;
+    } cases[] = {{0x40000000, LM_OK},
+                 {0xC0000000, LM_OK},
+                 {0x40000001, LM_ERR_RANGE},
+                 {0xBFFFFFFF, LM_ERR_RANGE}};
+    for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
+        struct lm_environment e = full();
+        e.rain[0].centre.latitude = cases[i].latitude;
+        assert_int_equal(lm_environment_check(&e), cases[i].status);
+        e = full();
+        e.jammer[0].position.latitude = cases[i].latitude;
+        assert_int_equal(lm_environment_check(&e), cases[i].status);
+    }
+}
