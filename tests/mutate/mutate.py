@@ -29,8 +29,6 @@ import reach
 
 JUDGED = Path("tests/mutate/judged.txt")
 WITHOUT = {"firmware/base/font.c", "firmware/table/radar.c"}
-ROOMS = {"bus": "decode/bus/nav", "nav": "decode/bus/nav", "page": "page/display", "display": "page/display",
-         "base": "base/table", "table": "base/table"}
 VERDICTS = ("equivalent", "unobservable")
 
 
@@ -206,7 +204,7 @@ def diff(mutant):
 
 def room(source):
     parts = source.split("/")
-    return "fixed" if parts[0] == "fixed" else ROOMS.get(parts[1], parts[1])
+    return "fixed" if parts[0] == "fixed" else parts[1]
 
 
 def percent(part, whole):
