@@ -289,3 +289,135 @@ TEST(a_broken_rule_between_fields_is_refused_by_name)
         expect_refused(&radar, rules[i].field, rules[i].index, true);
     }
 }
+
+/* Decibels as a table has them. */
+#define DB(decibels) ((decibels)*256)
+
+TEST(the_range_of_each_field_is_that_of_its_remark_in_radar_h)
+{
+    static const struct {
+        const char *field;
+        int64_t min, max;
+    } ranges[] = {
+        {"sensor", LM_SENSOR_X, LM_SENSOR_MMW},
+        {"ranges", 1, LM_RANGES_MAX},
+        {"range.range_m", 1852, LM_RADAR_RANGE_MAX_M},
+        {"range.range_nm", 1, 999},
+        {"range.stc_end_m", 100, 400000},
+        {"range.pulse_ns[NORM]", 10, 100000},
+        {"range.pulse_ns[EXP]", 10, 100000},
+        {"range.pulse_ns[DBS1]", 10, 100000},
+        {"range.pulse_ns[DBS2]", 10, 100000},
+        {"range.code_gain_db_q8[NORM]", 0, DB(40)},
+        {"range.code_gain_db_q8[EXP]", 0, DB(40)},
+        {"range.code_gain_db_q8[DBS1]", 0, DB(40)},
+        {"range.code_gain_db_q8[DBS2]", 0, DB(40)},
+        {"range_start_nm", 1, 999},
+        {"azimuth_half", 1 << 20, LM_RADAR_AZIMUTH_MAX},
+        {"wavelength_um", LM_WAVELENGTH_MIN_UM, LM_WAVELENGTH_MAX_UM},
+        {"cells", 64, LM_RADAR_CELLS_MAX},
+        {"line", 1 << 20, FX_BAM_DEG(10)},
+        {"sample", 1 << 21, FX_BAM_DEG(6)},
+        {"antenna.azimuth_beam", LM_RADAR_BEAM_MIN, FX_BAM_DEG(20)},
+        {"antenna.elevation_beam", LM_RADAR_BEAM_MIN, FX_BAM_DEG(60)},
+        {"antenna.fan", 0, FX_BAM_DEG(60)},
+        {"antenna.bar_spacing", 0, FX_BAM_DEG(10)},
+        {"antenna.azimuth_limit", 1 << 20, LM_RADAR_AZIMUTH_MAX},
+        {"antenna.tilt_max", 0, FX_BAM_DEG(60)},
+        {"receiver.noise_looks_log2", 0, LM_LOOKS_LOG2_MAX},
+        {"receiver.noise_db_q8", DB(-100), DB(20)},
+        {"receiver.noise_range_m", 1852, LM_RADAR_RANGE_MAX_M},
+        {"receiver.noise_height_m", 0, 30000},
+        {"receiver.noise_pulse_ns", 10, 100000},
+        {"receiver.air_loss_db_per_km_q16", 0, 1 << 14},
+        {"mode.bam_per_s", LM_RADAR_RATE_MIN, LM_RADAR_RATE_MAX},
+        {"mode.range_max_nm", 1, 999},
+        {"mode.fov_last", 0, LM_FOVS - 1},
+        {"mode.bars", 1, 8},
+        {"mode.stretch_cells", 0, 4},
+        {"mode.clutter_db_q8", 0, DB(64)},
+        {"mode.gate_mm_s[0]", 0, LM_RADAR_SPEED_MAX_MM_S},
+        {"mode.gate_mm_s[1]", 0, LM_RADAR_SPEED_MAX_MM_S},
+        {"mode.tone.black_db_q8", DB(-64), DB(64)},
+        {"mode.tone.white_db_q8", DB(-64), DB(64)},
+        {"mode.tone.gamma_q8", 64, LM_TONE_GAMMA_MAX_Q8},
+        {"fov.bam_per_s", 0, LM_RADAR_RATE_MAX},
+        {"fov.range_max_nm", 1, 999},
+        {"fov.slew_percent", 1, 200},
+        {"fov[NORM].window_permille", 0, 0},
+        {"fov[EXP..].window_permille", 5, 250},
+        {"fov.azimuth_half_max", 0, LM_RADAR_AZIMUTH_MAX},
+        {"fov.sharpening", 1, LM_RADAR_SHARPENING_MAX},
+        {"fov.beam_step", 0, FX_BAM_DEG(20)},
+        {"fov.azimuths_log2", 0, LM_RADAR_AZIMUTHS_LOG2_MAX},
+        {"fov.ground_leak_db_q8", DB(-100), 0},
+        {"sar.cells", 32, LM_RADAR_PATCH_CELLS_MAX},
+        {"sar.cell_min_mm", 100, 100000},
+        {"sar.cell_max_mm", 100, 100000},
+        {"sar.squint_min", 0, FX_BAM_DEG(80)},
+        {"sar.dwell_max_ms", 1, 131071},
+        {"sar.reference_speed_mm_s", 1000, LM_RADAR_SPEED_MAX_MM_S},
+        {"sar.mocomp_residual_permille", 0, 1000},
+        {"sar.noise_floor_db_q8", DB(-100), DB(20)},
+        {"sar.line_lobe", 1 << 20, FX_BAM_90},
+        {"sar.ground_leak_db_q8", DB(-100), 0},
+        {"sar.ground_leak_most_db_q8", DB(-60), DB(20)},
+        {"sar.side_lobes.over_shadow_db_q8", 0, DB(100)},
+        {"sar.side_lobes.above_db_q8", 0, DB(100)},
+        {"sar.side_lobes.a_line", 0, LM_RADAR_SIDE_LOBES_MAX},
+        {"sar.speckle.looks_log2", 0, LM_LOOKS_LOG2_MAX},
+        {"sar.tone.black_db_q8", DB(-64), DB(64)},
+        {"sar.tone.white_db_q8", DB(-64), DB(64)},
+        {"sar.tone.gamma_q8", 64, LM_TONE_GAMMA_MAX_Q8},
+        {"illumination.edge_structure_db_q8", 0, LM_EDGE_MAX_DB_Q8},
+        {"illumination.edge_trees_db_q8", 0, LM_EDGE_MAX_DB_Q8},
+        {"illumination.shore_db_q8", 0, LM_EDGE_MAX_DB_Q8},
+        {"illumination.shore_width_m", 0, 10000},
+        {"sea.upwind_db_q8", DB(-10), DB(10)},
+        {"sea.crosswind_db_q8", DB(-10), DB(10)},
+        {"sea.downwind_db_q8", DB(-10), DB(10)},
+        {"facing.lobe_half", FX_BAM_DEG(4), FX_BAM_DEG(45)},
+        {"facing.floor_permille", 10, 1000},
+    };
+    uint32_t n = 0;
+    for (; n < sizeof ranges / sizeof *ranges; n++) {
+        const struct lm_radar_field *f = lm_radar_field(n);
+        assert_non_null(f);
+        assert_string_equal(f->name, ranges[n].field);
+        if (f->min != ranges[n].min || f->max != ranges[n].max) {
+            fail_msg("%s has another range than radar.h says", f->name);
+        }
+    }
+    assert_null(lm_radar_field(n));
+}
+
+TEST(a_mode_is_found_by_its_name_in_either_case_and_a_field_is_no_mode)
+{
+    struct lm_radar radar = lm_radar_default;
+    memcpy(radar.mode[LM_SECTOR_SEA].name, "AZ@", 4); /* ends of the alphabet, and one before it */
+    assert_int_equal(lm_radar_find_mode(&radar, "az@"), LM_SECTOR_SEA);
+    assert_int_equal(lm_radar_find_mode(&radar, "Az@"), LM_SECTOR_SEA);
+    assert_int_equal(lm_radar_find_mode(&radar, "az`"), -1);
+    assert_int_equal(lm_radar_find_mode(&radar, "bcn"), LM_SECTOR_BEACON);
+    for (uint32_t i = 0; i < LM_FOVS; i++) {
+        assert_int_equal(lm_radar_find_mode(&radar, radar.fov[i].name), -1);
+        assert_int_equal(lm_radar_find_fov(&radar, radar.fov[i].name), i);
+    }
+    assert_int_equal(lm_radar_find_fov(&radar, "az@"), -1);
+}
+
+TEST(an_azimuth_is_found_by_its_degrees)
+{
+    for (int32_t i = 0; i < LM_AZIMUTHS; i++) {
+        const double degrees = lm_radar_default.azimuth_half[i] * 360.0 / 4294967296.0;
+        assert_int_equal(lm_radar_find_azimuth(&lm_radar_default, (int32_t)(degrees + 0.5)), i);
+    }
+    assert_int_equal(lm_radar_find_azimuth(&lm_radar_default, 1), -1);
+}
+
+TEST(a_table_may_start_with_its_smallest_scale)
+{
+    struct lm_radar radar = lm_radar_default;
+    radar.range_start_nm = radar.range[0].range_nm;
+    assert_int_equal(lm_radar_check(&radar, NULL), LM_OK);
+}

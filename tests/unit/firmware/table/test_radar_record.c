@@ -174,3 +174,14 @@ TEST(each_field_has_the_unit_that_its_name_says)
         }
     }
 }
+
+TEST(a_record_too_short_for_a_version_is_corrupt_whatever_lies_behind_it)
+{
+    uint8_t record[LM_RADAR_RECORD_BYTES];
+    struct lm_radar radar;
+    memset(record, 255, sizeof record);
+    for (uint32_t bytes = 0; bytes < 8; bytes++) {
+        assert_int_equal(lm_radar_unpack(&radar, record, bytes), LM_ERR_CORRUPT);
+    }
+    assert_int_equal(lm_radar_unpack(&radar, record, 8), LM_ERR_VERSION);
+}
