@@ -2,6 +2,7 @@
 #include "check.h"
 #include "fx/crc32c.h"
 #include "lm/bus.h"
+#include "lm/bus_filters.h"
 #include "lm/bus_record.h"
 #include "lm/status.h"
 
@@ -372,5 +373,72 @@ TEST(every_built_in_profile_passes)
 {
     for (const struct lm_bus_named_profile *n = lm_bus_profiles; n->name != NULL; n++) {
         assert_int_equal(lm_bus_profile_check(n->profile, NULL), LM_OK);
+    }
+}
+
+/* ---- ends of what is allowed ---- */
+
+SPOIL(lowest_range, row->low = -100000)
+SPOIL(highest_range, row->high = 100000)
+SPOIL(quickest_period, row->period_us = 1000)
+SPOIL(slowest_period, row->period_us = row->stale_ms * 1000u)
+SPOIL(stale_just_before, row->dead_ms = (uint16_t)(row->stale_ms + 1))
+SPOIL(dead_latest, row->dead_ms = 60000)
+SPOIL(coordinate_latest, (row->field = LM_BUS_LATITUDE, row->high = 90, row->dead_ms = 4000))
+SPOIL(lowest_id, row->id = 200)
+SPOIL(most_units, row->per_unit = 1000000000)
+SPOIL(most_bits, row->packing.bits = ((struct lm_bus_bits){0, 32}))
+SPOIL(latest_bits, row->packing.bits.first = 48)
+SPOIL(largest_none, (row->packing.has_none = true, row->packing.none = 0xffff))
+SPOIL(largest_factor, row->packing.multiplier = (1 << 30) - 1)
+SPOIL(least_shift, row->packing.shift = 1)
+SPOIL(largest_shift, row->packing.shift = 60)
+SPOIL(largest_places, row->packing.frac_bits = 60)
+SPOIL(largest_bias, row->packing.bias = (1LL << 61) - 1)
+SPOIL(lowest_bias, row->packing.bias = 1 - (1LL << 61))
+
+TEST(a_row_may_reach_each_end_of_what_is_promised)
+{
+    static void (*const common[])(struct lm_bus_row *) = {
+        lowest_range,      highest_range, quickest_period,  slowest_period,
+        stale_just_before, dead_latest,   coordinate_latest};
+    static void (*const packed[])(struct lm_bus_row *) = {
+        most_bits,     latest_bits,    largest_none, largest_factor, least_shift,
+        largest_shift, largest_places, largest_bias, lowest_bias};
+    for (size_t i = 0; i < sizeof common / sizeof *common; i++) {
+        assert_int_equal(check_spoilt(LM_BUS_CANAEROSPACE, common[i], NULL), LM_OK);
+        assert_int_equal(check_spoilt(LM_BUS_PACKED, common[i], NULL), LM_OK);
+    }
+    assert_int_equal(check_spoilt(LM_BUS_CANAEROSPACE, lowest_id, NULL), LM_OK);
+    assert_int_equal(check_spoilt(LM_BUS_CANAEROSPACE, most_units, NULL), LM_OK);
+    for (size_t i = 0; i < sizeof packed / sizeof *packed; i++) {
+        assert_int_equal(check_spoilt(LM_BUS_PACKED, packed[i], NULL), LM_OK);
+    }
+}
+
+TEST(a_head_alone_tells_its_version_and_what_is_shorter_nothing)
+{
+    memset(record, 0, sizeof record);
+    record[AT_VERSION] = LM_BUS_RECORD_VERSION + 1;
+    assert_int_equal(lm_bus_unpack(&table, record, LM_BUS_RECORD_HEAD_BYTES), LM_ERR_VERSION);
+    assert_int_equal(lm_bus_unpack(&table, record, LM_BUS_RECORD_HEAD_BYTES - 1), LM_ERR_CORRUPT);
+}
+
+/* The redundancy channel stands from bit 16 on, and the bits above the greatest one are clear. */
+TEST(filters_let_pass_each_channel_that_there_is_and_no_other)
+{
+    struct lm_can_filter filters[LM_BUS_FILTERS_MAX];
+    const uint32_t count = lm_bus_filters(&lm_bus_canas17, filters);
+    uint32_t most = 1;
+    while (most < LM_BUS_CHANNELS) {
+        most *= 2;
+    }
+    for (uint32_t channel = 0; channel < 1u << 13; channel++) {
+        const uint32_t id = lm_bus_canas17.rows[0].id | channel << 16;
+        bool passes = false;
+        for (uint32_t i = 0; i < count; i++) {
+            passes |= filters[i].is_extended && ((id ^ filters[i].id) & filters[i].mask) == 0;
+        }
+        assert_int_equal(passes, channel < most);
     }
 }

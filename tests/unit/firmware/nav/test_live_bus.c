@@ -475,3 +475,21 @@ TEST(what_is_of_no_live_target_is_not_taken)
     assert_int_equal(ear->live.count.removed + ear->live.count.torn, 0);
     free(ear);
 }
+
+TEST(a_part_that_comes_again_begins_its_set_anew)
+{
+    for (int again = 0; again < 8; again++) {
+        struct ear *ear = open_ear();
+        for (int part = 0; part <= again && part < 7; part++) {
+            hear_part(ear, (struct from){20, 5, 1, S}, part, 46);
+        }
+        const int repeated = again < 7 ? again : 6;
+        hear_part(ear, (struct from){20, 5, 1, S}, repeated, 47);
+        assert_int_equal(ear->live.count.torn, 1);
+        for (int part = repeated + 1; part < 8; part++) {
+            hear_part(ear, (struct from){20, 5, 1, S}, part, 47);
+        }
+        assert_int_equal(ear->live.count.sets, repeated == 0);
+        free(ear);
+    }
+}

@@ -135,3 +135,22 @@ TEST(only_channel_0_is_heard)
     hear_frame(&ear, &f);
     assert_int_equal(set_at(&ear, 0), 0);
 }
+
+TEST(each_kind_has_its_amounts_to_both_ends_and_no_kind_comes_after_the_last)
+{
+    static const int16_t ends[LM_MALFUNCTIONS][2] = {
+        {-180, 180}, {0, 60},     {0, 60},     {-180, 180}, {-180, 180},
+        {-180, 180}, {-180, 180}, {-180, 180}, {-30, 30},   {1, 28}};
+    struct ear ear = open_ear();
+    for (uint8_t kind = 0; kind < LM_MALFUNCTIONS; kind++) {
+        for (int end = 0; end < 2; end++) {
+            hear(&ear, 30, kind, ends[kind][end], S);
+            assert_int_equal(ear.broken.now.amount_q8[kind], ends[kind][end] * 256);
+        }
+    }
+    assert_int_equal(ear.broken.count.refused, 0);
+    hear_clear(&ear, LM_MALFUNCTIONS, S);
+    assert_int_equal(ear.broken.count.refused, 1);
+    hear_clear(&ear, LM_MALFUNCTIONS - 1, S);
+    assert_int_equal(ear.broken.count.refused, 1);
+}

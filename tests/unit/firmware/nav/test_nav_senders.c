@@ -88,3 +88,26 @@ TEST(a_rival_is_named)
     assert_int_equal(n.rival_node, 77);
     assert_int_equal(n.item[LM_BUS_PITCH][0].value, 5);
 }
+
+TEST(a_tolerance_is_kept_to_its_last_unit)
+{
+    static const struct {
+        uint8_t field;
+        int32_t most;
+    } tolerances[] = {{LM_BUS_LATITUDE, 238609},          {LM_BUS_LONGITUDE, 238609},
+                      {LM_BUS_ELLIPSOID_HEIGHT, 6400},    {LM_BUS_GROUND_SPEED, 20000},
+                      {LM_BUS_PITCH, 59652324},           {LM_BUS_ROLL, 59652324},
+                      {LM_BUS_HEADING, 59652324},         {LM_BUS_TRUE_HEADING, 59652324},
+                      {LM_BUS_BARO_ALTITUDE, 6400},       {LM_BUS_TRUE_ALTITUDE, 6400},
+                      {LM_BUS_ALTITUDE_RATE, 20000},      {LM_BUS_EAST_VELOCITY, 20000},
+                      {LM_BUS_NORTH_VELOCITY, 20000},     {LM_BUS_UP_VELOCITY, 20000},
+                      {LM_BUS_MAGNETIC_HEADING, 59652324}};
+    for (size_t i = 0; i < sizeof tolerances / sizeof *tolerances; i++) {
+        const uint8_t field = tolerances[i].field;
+        const int32_t most = tolerances[i].most;
+        assert_int_equal(disagreements(field, 100, 100 + most), 0);
+        assert_int_equal(disagreements(field, 100, 101 + most), 1);
+        assert_int_equal(disagreements(field, 100 + most, 100), 0);
+        assert_int_equal(disagreements(field, 101 + most, 100), 1);
+    }
+}
