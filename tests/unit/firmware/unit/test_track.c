@@ -742,3 +742,30 @@ TEST(a_track_that_is_off_stays_as_it_is)
     lm_track_step(&t, &nothing, 1000000);
     assert_memory_equal(&t, &before, sizeof t);
 }
+
+TEST(a_held_snowplow_cursor_stays_held_when_another_key_acts)
+{
+    struct rig *r = fly_rig();
+    press(r, 8);
+    run(r, 0.5);
+    command(r, lm_control_designate());
+    run(r, 0.1);
+    const struct lm_position held = r->unit.cursor.position;
+    press(r, 20);
+    run(r, 1);
+    assert_int_equal(scale_nm(r), 20);
+    assert_memory_equal(&r->unit.cursor.position, &held, sizeof held);
+    free_rig(r);
+}
+
+TEST(a_search_forgets_the_best_it_had_when_targets_get_other_numbers)
+{
+    struct rig *r = rig_at(46, 11);
+    put_target(r);
+    r->unit.track.search.has_best = true;
+    r->unit.track.search.next = 1;
+    lm_tracking_renumber(&r->unit, 0, 0);
+    assert_false(r->unit.track.search.has_best);
+    assert_int_equal(r->unit.track.search.next, 0);
+    free_rig(r);
+}

@@ -659,3 +659,22 @@ TEST(a_radar_table_that_breaks_its_contract_is_refused)
     assert_int_equal(lm_unit_init(&r->unit, &r->board.lent), LM_ERR_TABLE);
     free_rig(r);
 }
+
+/* From the cell on for which the scan line reads a LOD, and no earlier, that LOD is fine enough. */
+TEST(a_picture_is_coarse_where_the_map_has_longer_cells_than_a_scan_line_allows)
+{
+    struct rig *r = start_rig();
+    run(r, 1);
+    const struct lm_db *db = &r->unit.map.db;
+    const struct lm_coverage fine = {0};
+    assert_true(db->lod_count > 1);
+    for (uint8_t lod = 1; lod < db->lod_count; lod++) {
+        uint32_t cell_mm = 1;
+        for (uint32_t step = 1u << 24; step > 0; step /= 2) {
+            cell_mm += lm_scan_lod(db, cell_mm + step) < lod ? step : 0;
+        }
+        assert_int_equal(lm_coverage_coarse_mm(&fine, db, lod, cell_mm), lm_db_cell_mm(db, lod));
+        assert_int_equal(lm_coverage_coarse_mm(&fine, db, lod, cell_mm + 1), 0);
+    }
+    free_rig(r);
+}
