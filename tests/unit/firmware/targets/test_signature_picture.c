@@ -511,3 +511,29 @@ TEST_WITH(without_its_chip_a_target_is_a_point_of_its_cross_section, set_up,
     const double level = 10 * log10(power) + clutter_db(spacing_m, cell_m, range_m);
     assert_true(fabs(level - 22.5) < 0.1);
 }
+
+TEST_WITH(a_chip_behind_the_horizon_adds_nothing_to_a_line_and_says_so, set_up,
+          tear_down_signature_world)
+{
+    struct fixture *f = *state;
+    const struct lm_target t = target_beyond(range_m, 0, 77);
+    const struct lm_target_line line = line_of(LINES / 2);
+    struct lm_target_candidates candidates;
+    near_of(f, &t, true, &candidates);
+    for (int is_hidden = 0; is_hidden < 2; is_hidden++) {
+        int32_t horizon[CELLS];
+        int16_t level_q8[CELLS];
+        const struct lm_target_horizon sight = {horizon, 26};
+        int changed = 0;
+        for (int c = 0; c < CELLS; c++) {
+            horizon[c] = is_hidden ? 1 << 26 : -(1 << 26);
+            level_q8[c] = -100 * 256;
+        }
+        const uint32_t added = lm_target_line_add(&candidates, &line, &sight, level_q8);
+        for (int c = 0; c < CELLS; c++) {
+            changed += level_q8[c] != -100 * 256;
+        }
+        assert_int_equal(added == 0, is_hidden);
+        assert_int_equal(changed == 0, is_hidden);
+    }
+}

@@ -192,3 +192,24 @@ TEST_WITH(terrain_and_shadows_go_together, set_up, tear_down_signature_world)
     assert_true(f->points.scatterer[1].is_hidden);
     assert_false(f->points.scatterer[0].is_hidden);
 }
+
+TEST_WITH(a_point_is_shaded_on_the_first_and_the_last_line_of_a_patch, set_up,
+          tear_down_signature_world)
+{
+    struct fixture *f = *state;
+    int first = 0, last = 0;
+    for (int right_m = -66; right_m <= 66; right_m += right_m == -60 ? 120 : 1) {
+        const struct spot here = {right_m, 0, 0}, at = {right_m, 5, 0};
+        struct lm_target targets[2] = {target_with_signature(46, 11, 0), point_at(46, 11, 0, 10)};
+        put_at(&targets[0], &here);
+        put_at(&targets[1], &at);
+        make_patch(f, targets, 2, false);
+        const struct lm_patch_scatterer *point = &f->points.scatterer[1];
+        if (point->line >= 0 && point->line < LINES) {
+            assert_true(point->is_shaded);
+            first += point->line == 0;
+            last += point->line == LINES - 1;
+        }
+    }
+    assert_true(first > 0 && last > 0);
+}
