@@ -34,7 +34,7 @@ $(call archive, $(LIB_support), $(wildcard tests/support/*.c))
 make_board = env $(patsubst %,-u %,MAKEFLAGS MAKEOVERRIDES CC OPT OPT_core LDFLAGS) $(MAKE) --no-print-directory -j2 BOARD=$(1)
 
 .PHONY: help deps all run check check-clang check-panel panel package bench gallery fuzz rooms lint format clean
-.PHONY: cuts deps-world reproduce web world zcu102 run-zcu102 size bench-zcu102 cycles coverage figures prove
+.PHONY: cuts deps-world reproduce web world zcu102 run-zcu102 size bench-zcu102 bench-m7 cycles coverage figures prove
 
 help: ## Print this menu
 	@echo 'landmass: make TARGET'
@@ -126,6 +126,10 @@ size: zcu102 ## Print that board's memory map, its budgets, the deepest stack, a
 bench-zcu102: zcu102 ## Count the instructions of a flight there, by stage and mode: the same figures in each run
 	@$(MAKE) --no-print-directory $(PROGRAMS) $(ZCU102_TOOLS)
 	@sh bsp/zcu102/run.sh $(O) count
+
+bench-m7: deps ## Count the instructions of a patch on a Cortex-M7, which has no vectors
+	@$(MAKE) --no-print-directory -j$(CORES) $(CORTEX_M7)/bench.elf $(STAGE_BENCH)
+	@sh tests/cortex-m7/bench.sh $(O)
 
 cycles: zcu102 ## Estimate the cycles of that flight at 1.2 GHz by stage and loop, and what bounds each; a minute or two
 	@$(MAKE) --no-print-directory $(PROGRAMS) $(ZCU102_TOOLS)

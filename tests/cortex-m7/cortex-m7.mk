@@ -21,8 +21,3 @@ $(CORTEX_M7)/test_golden: tests/cortex-m7/test_golden.sh $(O)/bin/tests/zcu102/g
 	@mkdir -p $(@D)
 	@cp $< $@
 	@chmod +x $@
-
-.PHONY: bench-m7
-bench-m7: deps ## Count the instructions of a patch on a Cortex-M7, which has no vectors
-	@$(MAKE) --no-print-directory -j$(CORES) $(CORTEX_M7)/bench.elf $(STAGE_BENCH)
-	@sh tests/cortex-m7/bench.sh $(O)

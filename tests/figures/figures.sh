@@ -4,7 +4,7 @@ set -eu
 build=${1:?usage: figures.sh BUILD-DIR}
 mkdir -p build/figures-log
 rm -rf build/figures
-for command in size coverage bench-zcu102 bench; do
+for command in size coverage bench-zcu102 bench-m7 bench; do
     echo "figures: $command (build/figures-log/$command)"
     if [ "$command" = bench ]; then
         make --no-print-directory all

@@ -13,6 +13,7 @@ from tap import Tap  # noqa: E402
 
 # Who measures what has a goal: the figure's name, or the end of it, stands there in quotes.
 MEASURED_BY = {"bench": ["tests/bench/bench.sh", "tests/bench/host.py"], "bench-zcu102": ["tests/zcu102/bench.py"],
+               "bench-m7": ["tests/cortex-m7/bench.sh"],
                "run": ["Makefile"], "check": ["Makefile"]}
 
 
