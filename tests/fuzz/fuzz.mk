@@ -4,19 +4,21 @@
 #   fuzz_target NAME,SEES      tests/fuzz/fuzz_NAME.c and the sanitized libraries, named as in host-sim/host-sim.mk
 LIB_fuzz := $(O)/tests/fuzz/libfuzz.a
 $(call archive, $(LIB_fuzz), $(addprefix tests/fuzz/,seal.c file.c track.c osm.c))
-# For the libFuzzer programs, in place of what takes long and is not under test.
-FUZZ_QUICK := $(addprefix $(O)/sanitized/tests/fuzz/,large.o sum.o)
-LINK_quick := $(addprefix -Wl$(comma)--wrap=,malloc calloc realloc free fx_crc32c)
+# In place of what takes long and is not under test: of blocks in all programs, of sums in those of libFuzzer.
+FUZZ_LARGE := $(O)/sanitized/tests/fuzz/large.o
+FUZZ_SUM   := $(O)/sanitized/tests/fuzz/sum.o
+LINK_large := $(addprefix -Wl$(comma)--wrap=,malloc calloc realloc free)
+LINK_sum   := -Wl,--wrap=fx_crc32c
 
 define fuzz_rules
 FUZZ_NAMES += $(1)
 FUZZ_OBJS_$(1) := $(call sanitized,$(addprefix $(O)/tests/fuzz/,fuzz_$(1).o quiet_errors.o) \
     $(LIB_fuzz) $(LIB_support) $(call host_archives,$(2)))
-$(O)/bin/tests/fuzz/test_fuzz_$(1): $(O)/sanitized/tests/fuzz/standalone.o $$(FUZZ_OBJS_$(1)) \
+$(O)/bin/tests/fuzz/test_fuzz_$(1): $(O)/sanitized/tests/fuzz/standalone.o $$(FUZZ_OBJS_$(1)) $(FUZZ_LARGE) \
     | $(wildcard tests/fuzz/corpus/$(1)/*)
-$(O)/bin/fuzz/$(1): $$(FUZZ_OBJS_$(1)) $(FUZZ_QUICK)
-$(O)/bin/tests/fuzz/test_fuzz_$(1): LDLIBS = $$(LINK_sanitized) $$(call host_links,$(2))
-$(O)/bin/fuzz/$(1): LDLIBS = $$(LINK_sanitized) $$(LINK_quick) $$(call host_links,$(2))
+$(O)/bin/fuzz/$(1): $$(FUZZ_OBJS_$(1)) $(FUZZ_LARGE) $(FUZZ_SUM)
+$(O)/bin/tests/fuzz/test_fuzz_$(1): LDLIBS = $$(LINK_sanitized) $$(LINK_large) $$(call host_links,$(2))
+$(O)/bin/fuzz/$(1): LDLIBS = $$(LINK_sanitized) $$(LINK_large) $$(LINK_sum) $$(call host_links,$(2))
 endef
 fuzz_target = $(eval $(call fuzz_rules,$(strip $(1)),$(strip $(2))))
 

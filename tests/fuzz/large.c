@@ -1,5 +1,5 @@
-/* Large blocks for the libFuzzer programs, in place of malloc's (linked by --wrap; fuzz.mk). The
- * address sanitizer maps and shades each block of 128 KiB and more anew, which for structs of some
+/* Large blocks for the fuzz targets, in place of malloc's (linked by --wrap; fuzz.mk). The address
+ * sanitizer maps and shades each block of 128 KiB and more anew, which for structs of some
  * megabytes costs more than all that an input does with them. Here a block is kept for the next;
  * of one of more than 512 KiB, the pages that were touched are given back.
  *
@@ -30,8 +30,9 @@ void *__wrap_realloc(void *old, size_t size);
 void __wrap_free(void *block);
 
 /* What is freed is kept from use for a mebibyte, not for 256 of them, which no cache would hold. To
- * see who allocated a block, repeat a finding with ASAN_OPTIONS=malloc_context_size=30. */
-const char *__asan_default_options(void)
+ * see who allocated a block, repeat a finding with ASAN_OPTIONS=malloc_context_size=30. The tests
+ * have options of their own (standalone.c). */
+__attribute__((weak)) const char *__asan_default_options(void)
 {
     return "quarantine_size_mb=1:thread_local_quarantine_size_kb=64:malloc_context_size=2:"
            "allocator_release_to_os_interval_ms=-1";
