@@ -13,13 +13,21 @@ shift
 logs=$o/test-logs
 mkdir -p "$logs"
 
+# What two outputs of `times` are apart: seconds of a processor that programs took, those that they started among them.
+apart() { # BEFORE AFTER
+    awk 'FNR == 2 { split($0, t, /[ms ]+/); sum[++files] = t[1] * 60 + t[2] + t[3] * 60 + t[4] }
+        END { printf "%.1f\n", sum[2] - sum[1] }' "$1" "$2"
+}
+
 run_test() { # PROGRAM
     name=${1#"$o"/bin/}
     log=$logs/$(echo "$name" | tr / -).tap
-    started=$(date +%s)
+    times >"$log.before"
     CMOCKA_MESSAGE_OUTPUT=TAP BUILD=$o LLVM_PROFILE_FILE=$o/profiles/$(basename "$log" .tap)-%2m.profraw nice -n "$priority" timeout -k 5 "${TEST_TIMEOUT:-900}" "$1" >"$log" 2>&1 </dev/null
     status=$?
-    echo $(($(date +%s) - started)) >"${log%.tap}.seconds" # by which make mutants runs the quick ones first
+    times >"$log.after"
+    apart "$log.before" "$log.after" >"${log%.tap}.seconds" # by which make mutants runs the quick ones first
+    rm "$log.before" "$log.after"
     s=$(grep -cE '^(not )?ok .*# SKIP' "$log")
     p=$(grep -E '^ok ' "$log" | grep -vc '# SKIP')
     f=$(grep -E '^not ok ' "$log" | grep -vc '# SKIP')
