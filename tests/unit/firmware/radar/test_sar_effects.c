@@ -499,3 +499,20 @@ TEST(a_jammed_patch_has_no_dark_left)
     print_message("# lit pixels: %u, jammed %u of %u\n", lit[0], lit[1], pixels);
     assert_true(lit[1] * 1000ull > pixels * 999ull && lit[0] * 100 < pixels * 98);
 }
+
+TEST(cells_before_the_first_one_that_is_shown_are_in_shadow)
+{
+    int16_t level_q8[LM_CELLS_ROOM];
+    struct lm_layover layover;
+    struct lm_layover_view view = lean;
+    view.first = 7;
+    flat_ground(100);
+    for (int i = 0; i < CELLS; i++) {
+        level_q8[i] = 5 * 256;
+    }
+    lm_layover_set(&layover, tiny_classes(), &view);
+    const int16_t *shown_q8 = lm_layover_run(&layover, &ground, level_q8, laid_q8);
+    for (int i = 0; i < 20; i++) {
+        assert_true(i < 7 ? shown_q8[i] == LM_LEVEL_SHADOW : shown_q8[i] > 0);
+    }
+}
