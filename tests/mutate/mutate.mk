@@ -1,6 +1,7 @@
 # Small errors planted one at a time: which of them does no test notice? See mutate.py and docs/TRUST.md.
 MUTATE        := $(O)/mutate
-MUTATE_TESTS   = $(filter $(UNIT)/fixed/% $(UNIT)/firmware/% $(UNIT)/host-sim/bus/%,$(TESTS)) $(GOLDEN)/golden
+MUTATE_TESTS   = $(filter $(UNIT)/fixed/% $(UNIT)/firmware/% $(UNIT)/host-sim/bus/% $(UNIT)/host-sim/build/test_detail,$(TESTS)) \
+    $(GOLDEN)/golden
 MUTATE_OPTIONS = --mutants $(or $(MUTANTS),100) --jobs $(or $(JOBS),1) $(SEED:%=--seed %) $(if $(ONLY),--only $(ONLY)) \
     $(MINUTES:%=--minutes %) $(LEAST:%=--least %) $(PLANTED:%=--planted %)
 

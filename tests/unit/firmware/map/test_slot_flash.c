@@ -382,3 +382,15 @@ TEST_WITH(no_cut_in_a_load_leaves_nothing_or_a_mix_to_fly, erase, NULL)
         }
     }
 }
+
+TEST_WITH(a_small_flash_is_read_from_its_first_byte, erase, NULL)
+{
+    uint8_t bytes[64];
+    for (size_t i = 0; i < sizeof bytes; i++) {
+        flash_bytes[i] = (uint8_t)(3 * i + 1);
+    }
+    memory_flash_open(&flash, flash_bytes, 256 << 10);
+    lm_slot_flash_open(&slots, &flash.port, &db, scratch, sizeof scratch, POLLS);
+    assert_int_equal(lm_db_read(&slots.port, 0, bytes, sizeof bytes, POLLS), LM_OK);
+    assert_memory_equal(bytes, flash_bytes, sizeof bytes);
+}
