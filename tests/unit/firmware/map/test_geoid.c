@@ -463,3 +463,26 @@ TEST(a_head_of_pages_that_cannot_be_is_refused)
         }
     }
 }
+
+static void raise_all(struct pages *p)
+{
+    for (uint32_t i = 0; i < ROWS * COLUMNS; i++) {
+        for (uint32_t k = 0; k < 33 * 33; k++) {
+            p->page[i].height_m_q6[k / 33][k % 33] =
+                (int16_t)(p->page[i].height_m_q6[k / 33][k % 33] + 10 * 64);
+        }
+        seal_page(&p->page[i]);
+    }
+}
+
+TEST(a_page_of_the_image_before_is_not_taken_for_one_of_the_new_image)
+{
+    struct paged *before = open_paged(NULL), *now = open_paged(raise_all);
+    const struct lm_position on = {before->pages->page[5].south + 7,
+                                   before->pages->page[5].west + 9};
+    const double height_m = fly_to(before, on);
+    now->reader = before->reader;
+    assert_true(fabs(fly_to(now, on) - height_m - 10) < 0.1);
+    close_paged(before);
+    close_paged(now);
+}

@@ -83,3 +83,19 @@ TEST(nothing_is_to_be_done_where_gains_are_within_a_quarter_of_a_decibel)
                      LM_BUSY);
     free(f);
 }
+
+TEST(each_class_may_be_the_only_one_that_differs)
+{
+    for (uint32_t i = 0; i < LM_DB_CLASS_NONE; i++) {
+        struct fixture *f = make();
+        for (uint32_t k = 0; k < LM_DB_CLASS_NONE; k++) {
+            f->own.entry[k].lod_gain_db_q8[OWN_LOD] = (int16_t)(-40 + (k == i ? 1280 : 0));
+        }
+        f->tile.points[0][0].cell = (uint16_t)(100u << 8 | i << 4);
+        assert_int_equal(lm_tile_fit_begin(&f->fit, &f->tile, &f->own, OWN_LOD, &f->view, LOD),
+                         LM_BUSY);
+        (void)lm_tile_fit_run(&f->fit);
+        assert_int_equal(f->tile.points[0][0].cell, 110u << 8 | i << 4); /* 5 dB: ten codes */
+        free(f);
+    }
+}

@@ -769,3 +769,20 @@ TEST(a_search_forgets_the_best_it_had_when_targets_get_other_numbers)
     assert_int_equal(r->unit.track.search.next, 0);
     free_rig(r);
 }
+
+TEST(what_is_held_is_measured_twenty_times_a_second)
+{
+    struct rig *r = rig_at(46.01, 11.03);
+    command(r, track_it);
+    run(r, 1);
+    assert_int_equal(track_of(r)->state, LM_TRACK_HELD);
+    uint64_t before = track_of(r)->returned_us;
+    int measured = 0;
+    for (int step = 0; step < 500; step++) {
+        run(r, 0.002);
+        measured += track_of(r)->returned_us != before;
+        before = track_of(r)->returned_us;
+    }
+    assert_in_range(measured, 16, 20);
+    free_rig(r);
+}
