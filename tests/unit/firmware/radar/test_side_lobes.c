@@ -261,3 +261,31 @@ TEST(a_patch_draws_the_references_side_lobes_into_its_lines)
     assert_true(score.changed > 200);
     assert_int_equal(score.beyond_half_db, 0);
 }
+
+/* What is left on the stack must not count as cells. */
+static __attribute__((noinline)) void leave_on_stack(int16_t level_q8)
+{
+    volatile int16_t left_q8[8192];
+    for (uint32_t i = 0; i < sizeof left_q8 / sizeof *left_q8; i++) {
+        left_q8[i] = level_q8;
+    }
+}
+
+TEST(a_strong_cell_counts_up_to_the_last_but_one_of_a_line)
+{
+    for (int i = 0; i < 16; i++) {
+        const int at = i < 8 ? i : CELLS - 1 - (i - 8);
+        int16_t level_q8[LM_CELLS_ROOM];
+        for (int k = 0; k < LM_CELLS_ROOM; k++) {
+            level_q8[k] = FLOOR_Q8;
+        }
+        level_q8[at] = 37 * 256;
+        lm_side_lobes_clear(&lobes, &lm_radar_default.sar.side_lobes);
+        leave_on_stack(INT16_MAX);
+        lm_side_lobes_find(&lobes, 0, level_q8, CELLS, -46 * 256, 1);
+        /* The last cell itself is repeated beyond the end, and stands out of none. */
+        const uint32_t count = at != 0 && at != CELLS - 1;
+        assert_int_equal(lobes.line[0].count, count);
+        assert_true(count == 0 || lobes.line[0].strong[0].cell == at);
+    }
+}
