@@ -266,3 +266,28 @@ TEST(the_unit_reads_the_targets_and_counts_those_it_has_not)
     free(w.bytes);
     tiny_image_free(&image);
 }
+
+TEST(a_patch_wants_detail_where_the_map_has_some_and_longer_cells)
+{
+    static struct lm_sar sar;
+    tiny_map_open_soil(&map, SLOTS, &tone);
+    const uint32_t finest_mm = lm_db_cell_mm(&map.db, map.db.finest);
+    struct lm_db db = map.db;
+    for (int has_detail = 0; has_detail < 2; has_detail++) {
+        for (int is_finer = 0; is_finer < 2; is_finer++) {
+            const struct lm_sar_command command = {.centre = {hs_bam(46), hs_bam(11)},
+                                                   .range_m = 20000,
+                                                   .height_m_q6 = 6000 * 64,
+                                                   .look_azimuth = hs_bam(90),
+                                                   .cell_mm = finest_mm - (uint32_t)is_finer};
+            const struct lm_target_set none = {0};
+            const struct lm_sar_setup scene = {
+                .targets = &none, .epoch = 5, .sea_state = LM_SEA_STATE_OF_IMAGE};
+            db.detail_size = has_detail ? 64 : 0;
+            assert_int_equal(lm_sar_start(&sar, &lm_radar_default, &db, &command, &scene), LM_OK);
+            assert_int_equal(sar.detail_state,
+                             has_detail && is_finer ? LM_SAR_DETAIL_WANTED : LM_SAR_DETAIL_NONE);
+        }
+    }
+    tiny_map_close(&map);
+}
