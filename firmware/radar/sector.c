@@ -224,7 +224,7 @@ static bool differs(int32_t a_m_q10, int32_t b_m_q10)
     return fx_abs_u32(a_m_q10 - b_m_q10) > fx_abs_u32(a_m_q10) / 128 + 1024;
 }
 
-/* A height in steps of 1/64 to 1/128 of itself, at least of a metre, below 2^31: it hangs on no
+/* A height in steps of 1/128 to 1/256 of itself, at least of a metre, below 2^31: it hangs on no
  * other height. */
 static int32_t coarse_m_q10(int32_t height_m_q10)
 {

@@ -209,3 +209,20 @@ TEST(the_tiles_of_all_of_a_sweep_are_there_when_they_were_asked_for_at_its_start
     }
     free_sector_world(w);
 }
+
+/* Steps are a 128th to a 256th of the height, and the nearest counts. */
+TEST(a_shared_sector_is_seen_from_within_a_256th_of_the_own_height)
+{
+    const struct tiny_spec spec = tiny_spec_at(46, 11);
+    struct sector_world *w = make_sector_world(&spec);
+    const struct lm_sector_command command = {.mode = LM_SECTOR_GM, .fov = LM_FOV_NORM};
+    start_sector(w, &command, NULL, NULL);
+    w->sector.is_shared = true;
+    for (int32_t height_m = 300; height_m < 15000; height_m += 37) {
+        w->platform.height_m_q10 = height_m * 1024;
+        lm_sector_begin(&w->sector, &w->map.tiles, &w->platform);
+        const int32_t off_m_q10 = w->sector.grid.height_m_q10 - w->platform.height_m_q10;
+        assert_in_range(abs(off_m_q10), 0, height_m * 1024 / 256);
+    }
+    free_sector_world(w);
+}
