@@ -231,6 +231,17 @@ TEST(lines_of_every_direction_level_and_step_agree_with_the_image)
     assert_true(known > 20000);
 }
 
+/* Its last lanes fill the array to the end, behind which the elevations begin. */
+TEST(the_longest_line_ends_without_harm_to_its_beginning)
+{
+    static struct world w;
+    open_world(&w, 46, 11);
+    const struct lm_ground_path p = path_from(45.9935, 10.9935, 45, 1.5, 0);
+    assert_true(scan_and_compare(&w, 0, &p, LM_CELLS_MAX) > LM_CELLS_MAX / 2);
+    assert_true(w.line.run_count > 1 && w.line.elevation_m_q14[0] != 0);
+    tiny_map_close(&w.map);
+}
+
 TEST(every_step_of_elevation_that_a_tile_may_have_is_read)
 {
     static struct world w;
