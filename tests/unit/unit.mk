@@ -12,7 +12,7 @@ UNIT := $(O)/bin/tests/unit
 # alone, or once more as test_*_sanitized.
 UNIT_APART          := drivers/gpio/test_gpio drivers/gpio/fake_gpiod1 drivers/gpio/fake_gpiod2
 UNIT_SANITIZED      := firmware/bus/test_bus_fuzz $(addprefix firmware/unit/test_,hostile_controls mounted_targets mounts radar_extremes)
-UNIT_ALSO_SANITIZED := $(addprefix firmware/targets/test_,target_line target_patch signature)
+UNIT_ALSO_SANITIZED := $(addprefix firmware/,$(addprefix targets/test_,target_line target_patch signature) unit/test_bus_choice)
 ifneq ($(findstring coverage,$(O)),) # only the plain objects count what they run
 UNIT_SANITIZED :=
 UNIT_ALSO_SANITIZED :=

@@ -101,15 +101,19 @@ TEST(each_table_hears_its_own_interface)
     free_rig(r);
 }
 
-/* As many as a board may have, the last one among them; priorities follow in their order. */
+/* As many as a board may have, the last one among them; priorities follow in their order. What
+ * stands behind the tables, a list of all nodes, is no table. */
 TEST(each_of_three_further_tables_is_heard)
 {
+    static uint8_t everybody[4 * LM_BUS_NODE_BYTES];
     static struct lm_bus_row row[LM_BUS_TABLES_MORE];
     static struct lm_bus_profile table[LM_BUS_TABLES_MORE];
     struct rig *r = make_rig();
     struct lm_can_frame frame = {.length = 0};
     const struct lm_can can = {.ctx = &frame, .receive = give_once};
     r->board.lent.can = &can;
+    memset(everybody, 0xff, sizeof everybody);
+    r->board.lent.bus_nodes = everybody;
     for (uint32_t t = 0; t < LM_BUS_TABLES_MORE; t++) {
         row[t] = height_rows[0];
         row[t].id += t;
