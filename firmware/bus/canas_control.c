@@ -240,8 +240,8 @@ static void take_value(struct lm_canas_control *c, const struct lm_can_frame *fr
     if (!continues(c, frame, item)) {
         begin_set(c, frame, item);
     }
-    struct lm_control_words *w = &c->set.words; /* its first item is that of the item's row */
-    if (item >= w->end) {
+    struct lm_control_words *w = &c->set.words;
+    if (item < w->first || item >= w->end) {
         c->count.bad++; /* a value that this control does not have */
         c->set.missing = 0;
         return;
