@@ -5,7 +5,7 @@ O     := build/$(BOARD)
 include bsp/$(BOARD)/board.mk
 
 # -g1 has functions and lines, which a backtrace needs; a debugger wants OPT='-Og -g'. It is a tenth of the time of compiling.
-OPT  ?= -O2 -g1
+OPT  ?= -O2 -g1 -pipe
 CORES := $(shell nproc)
 CLANG ?= clang-19
 PKG_CONFIG ?= pkg-config
