@@ -173,7 +173,7 @@ COUNTED_TESTS = $(patsubst $(O)/bin/%,$(O)/%.o,$(filter $(O)/bin/tests/unit/fixe
 coverage-built: $(UNIT_TESTS) $(O)/every_object
 	@rm -rf $(O)/profiles
 	@status=0; sh tests/run.sh $(O) $(UNIT_TESTS) >$(O)/tests.log || { status=1; grep -A60 FAILED $(O)/tests.log; }; \
-	    python3 -B tests/figures/coverage.py $(O) $(O)/every_object || status=1; tail -n 1 $(O)/tests.log; exit $$status
+	    python3 -B tests/figures/coverage.py $(O) $(O)/every_object $(COUNTED_TESTS) || status=1; tail -n 1 $(O)/tests.log; exit $$status
 $(O)/every_object: $(LIB_firmware) $(LIB_fixed)
 	@echo 'int main(void) { return 0; }' | $(CC) $(LDFLAGS) -x c - -x none -Wl,--whole-archive $^ -Wl,--no-whole-archive -o $@
 
