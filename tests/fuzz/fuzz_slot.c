@@ -62,8 +62,9 @@ static void fill(struct slot_bytes *b, struct fuzz_supply *s, uint8_t parts)
     }
 }
 
-/* The same bytes in slot A of a flash; slot B is erased. */
-static void fly(const struct slot_bytes *b, bool is_whole)
+/* The same bytes in slot A of a flash; slot B is erased. What the PC calls whole is flown, unless
+ * its record tells of more bytes than this slot has. */
+static void fly(const struct slot_bytes *b, const struct slot *judged)
 {
     enum { HALF = 256 << 10, ROOM = HALF - LM_SLOT_COPIES * LM_SLOT_RECORD_STEP };
     static uint8_t bytes[LM_SLOTS * HALF];
@@ -79,7 +80,9 @@ static void fly(const struct slot_bytes *b, bool is_whole)
     }
     memory_flash_open(&flash, bytes, sizeof bytes);
     lm_slot_flash_open(&slots, &flash.port, &db, scratch, sizeof scratch, 10);
-    FUZZ_ASSERT(!is_whole || b->size > ROOM || slots.slot[0].verdict == LM_SLOT_FLOWN);
+    const bool is_whole = judged->verdict == SLOT_WHOLE && judged->record.sequence != 0;
+    FUZZ_ASSERT(!is_whole || b->size > ROOM || judged->record.image_bytes > ROOM ||
+                slots.slot[0].verdict == LM_SLOT_FLOWN);
     FUZZ_ASSERT(slots.slot[1].verdict == LM_SLOT_EMPTY);
     FUZZ_ASSERT(slots.port.size_bytes <= sizeof bytes);
 }
@@ -101,7 +104,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
     }
     FUZZ_ASSERT(slots[0].verdict != SLOT_WHOLE || slots[1].verdict == SLOT_WHOLE);
     (void)slot_choose(slots);
-    fly(&bytes, slots[0].verdict == SLOT_WHOLE && slots[0].record.sequence != 0);
+    fly(&bytes, &slots[0]);
     free(bytes.image);
     return 0;
 }
