@@ -6,9 +6,10 @@
 # JOBS=N in the environment: N targets at a time. Those that have tried least begin.
 #
 # A target runs in stretches. An eighth of the time goes to a program that tells libFuzzer of each comparison
-# (build/fuzz/comparisons), the rest to one that tells it of branches alone, which is several times as fast (build/fuzz/branches). New inputs are kept in
-# build/fuzz/corpus, whatever breaks a target in build/fuzz/findings. The new inputs that each stretch tried without a finding
-# are noted in build/fuzz/counts: count.sh adds them up. When interrupted, the stretches under way are noted too.
+# (build/fuzz/comparisons), the rest to one that tells it of branches alone, which is several times as fast
+# (build/fuzz/branches). New inputs are kept in build/fuzz/corpus, whatever breaks a target in build/fuzz/findings. The new
+# inputs that each stretch tried without a finding are noted in build/fuzz/counts: count.sh adds them up. When interrupted,
+# the stretches under way are noted too.
 # Ends with status 1 when something was found.
 set -u
 stretch=300

@@ -62,7 +62,7 @@ static size_t place_of(const void *block)
     return places && at < PLACES * PLACE_BYTES ? at / PLACE_BYTES : PLACES;
 }
 
-static bool begin(void)
+static void begin(void)
 {
     if (!places) {
         void *all = mmap(NULL, PLACES * PLACE_BYTES, PROT_NONE,
@@ -71,7 +71,6 @@ static bool begin(void)
         madvise(all, PLACES * PLACE_BYTES, MADV_NOHUGEPAGE);
         places = all;
     }
-    return true;
 }
 
 static void set_edges(size_t i, size_t size)
@@ -100,8 +99,11 @@ static size_t find(size_t size)
 
 static void *take(size_t size)
 {
-    const size_t i =
-        size >= LARGE_BYTES && size <= PLACE_BYTES - 3 * PAGE && begin() ? find(size) : PLACES;
+    if (size < LARGE_BYTES || size > PLACE_BYTES - 3 * PAGE) {
+        return NULL;
+    }
+    begin();
+    const size_t i = find(size);
     if (i == PLACES) {
         return NULL;
     }

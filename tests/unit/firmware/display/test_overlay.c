@@ -261,16 +261,23 @@ TEST(a_flag_that_does_not_exist_has_the_word_of_the_first)
     assert_string_equal(lm_flag_word(UINT32_MAX), lm_flag_word(0));
 }
 
+/* A glass with nothing on it but the warnings of these flags. */
+static struct lm_surface warned(uint16_t side, const struct lm_palette *palette, uint32_t flags)
+{
+    const struct lm_surface s = make_surface(side, side);
+    const struct lm_frame frame = lm_frame_of_display(side, side);
+    const struct lm_glass g = {.surface = s, .frame = &frame, .palette = palette};
+    lm_overlay_blank(&g);
+    lm_overlay_warnings(&g, flags, &reasons);
+    return s;
+}
+
 TEST(each_flag_has_a_word_of_its_own_on_the_glass)
 {
     struct lm_palette palette;
     lm_palette_set(&palette, &(struct lm_palette_config){0});
     for (uint16_t side = 256; side <= 1024; side += 256) {
-        struct lm_surface s = make_surface(side, side);
-        const struct lm_frame frame = lm_frame_of_display(side, side);
-        const struct lm_glass g = {.surface = s, .frame = &frame, .palette = &palette};
-        lm_overlay_blank(&g);
-        lm_overlay_warnings(&g, (1u << LM_FLAGS) - 1, &reasons);
+        struct lm_surface s = warned(side, &palette, (1u << LM_FLAGS) - 1);
         for (uint32_t i = 0; i < LM_FLAGS; i++) {
             assert_true(glass_find(&s, lm_flag_word(i), palette.warning, palette.ink, NULL));
             for (uint32_t j = 0; j < i; j++) {
@@ -530,11 +537,7 @@ TEST(the_box_of_a_warning_is_as_wide_on_both_sides_of_its_words_on_any_glass)
     struct lm_palette palette;
     lm_palette_set(&palette, &(struct lm_palette_config){0});
     for (uint16_t side = 256; side <= 1024; side += 256) {
-        struct lm_surface s = make_surface(side, side);
-        const struct lm_frame frame = lm_frame_of_display(side, side);
-        const struct lm_glass g = {.surface = s, .frame = &frame, .palette = &palette};
-        lm_overlay_blank(&g);
-        lm_overlay_warnings(&g, 1, &reasons);
+        struct lm_surface s = warned(side, &palette, 1);
         const struct lm_pen pen = lm_pen_for(&s, palette.warning);
         struct lm_point at;
         assert_true(glass_find(&s, lm_flag_word(0), palette.warning, palette.ink, &at));

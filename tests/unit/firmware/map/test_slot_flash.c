@@ -173,6 +173,21 @@ TEST_WITH(an_image_that_the_record_was_not_written_for_is_not_flown, erase, NULL
     assert_verdicts(LM_SLOT_FLOWN, LM_SLOT_DAMAGED);
 }
 
+/* Slot 0, whose image gets this header and its record another for it. */
+static enum lm_slot_verdict verdict_of_header(struct lm_image_header *header)
+{
+    header->crc = fx_crc32c(0, header, sizeof *header - sizeof header->crc);
+    memcpy(slot_at(0), header, sizeof *header);
+    struct lm_slot_record r = record_of(0, LM_SLOT_WHOLE, 2, 1);
+    r.image_bytes = header->image_bytes;
+    r.image_crc = header->crc;
+    lm_slot_seal(&r);
+    memcpy(slot_at(0) + record_at[0], &r, sizeof r);
+    memcpy(slot_at(0) + record_at[1], &r, sizeof r);
+    look();
+    return slots.slot[0].verdict;
+}
+
 /* Header and record agree on a length; up to the records it is the slot's. */
 static enum lm_slot_verdict verdict_of_length(uint64_t bytes)
 {
@@ -180,16 +195,7 @@ static enum lm_slot_verdict verdict_of_length(uint64_t bytes)
     fill(0, 0, 1);
     memcpy(&header, images[0].bytes, sizeof header);
     header.image_bytes = bytes;
-    header.crc = fx_crc32c(0, &header, sizeof header - sizeof header.crc);
-    memcpy(slot_at(0), &header, sizeof header);
-    struct lm_slot_record r = record_of(0, LM_SLOT_WHOLE, 2, 1);
-    r.image_bytes = bytes;
-    r.image_crc = header.crc;
-    lm_slot_seal(&r);
-    memcpy(slot_at(0) + record_at[0], &r, sizeof r);
-    memcpy(slot_at(0) + record_at[1], &r, sizeof r);
-    look();
-    return slots.slot[0].verdict;
+    return verdict_of_header(&header);
 }
 
 TEST_WITH(an_image_of_a_length_that_reaches_into_the_records_is_not_flown, erase, NULL)
@@ -210,15 +216,7 @@ static enum lm_slot_verdict verdict_of_section(uint64_t offset, uint64_t bytes, 
                                   .crc = is_sealed ? fx_crc32c(0, slot_at(0) + offset, bytes) : 1,
                                   .offset = offset,
                                   .bytes = bytes};
-    header.crc = fx_crc32c(0, &header, sizeof header - sizeof header.crc);
-    memcpy(slot_at(0), &header, sizeof header);
-    struct lm_slot_record r = record_of(0, LM_SLOT_WHOLE, 2, 1);
-    r.image_crc = header.crc;
-    lm_slot_seal(&r);
-    memcpy(slot_at(0) + record_at[0], &r, sizeof r);
-    memcpy(slot_at(0) + record_at[1], &r, sizeof r);
-    look();
-    return slots.slot[0].verdict;
+    return verdict_of_header(&header);
 }
 
 TEST_WITH(a_section_that_leaves_the_image_makes_the_slot_a_damaged_one, erase, NULL)
