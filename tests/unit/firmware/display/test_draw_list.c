@@ -167,6 +167,57 @@ TEST_WITH(text_is_drawn_in_the_blocks_that_a_pen_keeps_to_and_in_no_other, set_u
     assert_true(inked(f->noted) > 20 && inked(f->noted) < inked(f->now));
 }
 
+TEST_WITH(lines_are_drawn_in_the_blocks_that_a_pen_keeps_to_and_in_no_other, set_up, tear_down)
+{
+    struct fixture *f = *state;
+    for (int32_t width = 1; width <= 3; width++) {
+        struct lm_pen pen = pen_on(f->now);
+        memset(f->now, 0, sizeof f->now);
+        memset(f->noted, 0, sizeof f->noted);
+        pen.line_px = width;
+        draw_lines(&pen);
+        /* Every third block, so that both neighbours of a dot on a border have their turn. */
+        struct lm_damage within = {{0}};
+        for (int32_t y = 0; y < SIDE; y += LM_BLOCK_HEIGHT_PX) {
+            for (int32_t x = 0; x < SIDE; x += LM_BLOCK_WIDTH_PX) {
+                if ((x / LM_BLOCK_WIDTH_PX + y / LM_BLOCK_HEIGHT_PX) % 3 == 0) {
+                    const struct lm_rectangle block = {x, y, x + 1, y + 1};
+                    lm_damage_mark(&within, &block);
+                }
+            }
+        }
+        pen = pen_on(f->noted);
+        pen.line_px = width;
+        pen.within = &within;
+        draw_lines(&pen);
+        for (int32_t y = 0; y < SIDE; y++) {
+            for (int32_t x = 0; x < SIDE; x++) {
+                const bool is_within = (x / LM_BLOCK_WIDTH_PX + y / LM_BLOCK_HEIGHT_PX) % 3 == 0;
+                assert_int_equal(f->noted[y * SIDE + x], is_within ? f->now[y * SIDE + x] : 0);
+            }
+        }
+        assert_true(inked(f->noted) > 200 && inked(f->noted) < inked(f->now));
+    }
+}
+
+/* What lies beside the glass one way is empty there, and its corners mean nothing. */
+TEST_WITH(a_box_that_is_empty_either_way_is_not_noted, set_up, tear_down)
+{
+    struct fixture *f = *state;
+    struct lm_pen pen = pen_on(f->now);
+    pen.list = &f->list;
+    lm_draw_list_begin(&f->list, &f->damage);
+    lm_draw_box(&pen, -50, 100, 20, 20);
+    lm_draw_box(&pen, SIDE + 50, 100, 20, 20);
+    lm_draw_box(&pen, 100, -50, 20, 20);
+    lm_draw_box(&pen, 100, SIDE + 50, 20, 20);
+    lm_draw_box(&pen, 100, 100, 0, 20);
+    lm_draw_box(&pen, 100, 100, 20, 0);
+    lm_draw_list_end(&f->list);
+    assert_int_equal(f->list.count, 0);
+    assert_false(lm_damage_meets(&f->damage, &glass));
+}
+
 /* Of memory that holds a picture too old, or anything, all is due. */
 TEST_WITH(a_surface_that_is_new_or_too_old_is_drawn_whole, set_up, tear_down)
 {

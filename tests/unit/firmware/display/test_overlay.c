@@ -369,6 +369,28 @@ TEST(below_the_sixteen_greys_of_the_test_pattern_are_all_256_in_order)
     free_surface(&s);
 }
 
+/* On glasses that neither 16 nor 256 divides, as well. */
+TEST(each_column_of_the_test_patterns_bars_has_the_grey_of_its_place)
+{
+    struct lm_palette p;
+    lm_palette_set(&p, &(struct lm_palette_config){.tint = 1});
+    for (uint16_t side = 257; side < 1024; side += 109) {
+        struct lm_surface s = make_surface(side, side);
+        const struct lm_frame frame = lm_frame_of_display(side, side);
+        lm_overlay_test_pattern(&(struct lm_glass){.surface = s, .frame = &frame, .palette = &p});
+        const uint32_t top = side * 2u / 10, height = side / 10;
+        const uint32_t *bars = s.pixels + (top + height / 2) * s.stride_px;
+        const uint32_t *all = s.pixels + (top + height + height / 4) * s.stride_px;
+        for (uint32_t x = 0; x < side; x++) {
+            const uint32_t bar = x * 16 / side;
+            assert_true(bars[x] == p.picture[bar * 17] ||
+                        (bar < 15 && bars[x] == p.picture[bar * 17 + 17]));
+            assert_int_equal(all[x], p.picture[x * 256 / side]);
+        }
+        free_surface(&s);
+    }
+}
+
 TEST(the_grid_of_the_test_pattern_reaches_from_edge_to_edge_and_its_circles_are_closed)
 {
     struct lm_palette p;
@@ -530,6 +552,24 @@ TEST(what_is_tracked_is_a_diamond_filled_to_its_edges_and_no_further)
     assert_true(rows > 40);
     free_surface(&hollow);
     free_surface(&filled);
+}
+
+/* Four triangles that point at it, each as far as 45 thousandths of half the glass. */
+TEST(what_is_ranged_is_a_maltese_cross)
+{
+    struct lm_surface cross = draw_track_mark(LM_SHAPE_CROSS);
+    const int32_t far = 384 * 45 / 1000, aside = 384 * 15 / 1000;
+    assert_true(is_drawn(&cross, 600, 200));
+    for (int32_t side = -1; side <= 1; side += 2) {
+        for (int32_t along = -aside; along <= aside; along++) {
+            assert_true(is_drawn(&cross, 600 + along, 200 + side * far));
+            assert_true(is_drawn(&cross, 600 + side * far, 200 + along));
+        }
+        for (int32_t other = -1; other <= 1; other += 2) {
+            assert_false(is_drawn(&cross, 600 + side * far / 2, 200 + other * far / 2));
+        }
+    }
+    free_surface(&cross);
 }
 
 TEST(the_box_of_a_warning_is_as_wide_on_both_sides_of_its_words_on_any_glass)

@@ -385,6 +385,22 @@ TEST(a_page_that_is_damaged_or_another_is_counted_once_and_not_used)
     }
 }
 
+TEST(after_a_damaged_page_each_other_one_is_read)
+{
+    struct paged *p = open_paged(flip_a_bit);
+    p->db.geoid_m_q6 = 48 * 64;
+    for (uint32_t i = 0; i < ROWS * COLUMNS; i++) {
+        const struct lm_geoid *page = &p->pages->page[i];
+        const struct lm_position place = {page->south + 7, page->west + 9};
+        const double wanted_m = waves_m(hs_degrees(place.latitude), hs_degrees(place.longitude));
+        const struct lm_position damaged = {p->pages->page[5].south + 7,
+                                            p->pages->page[5].west + 9};
+        assert_true(fly_to(p, damaged) == 48);
+        assert_true(i == 5 || fabs(fly_to(p, place) - wanted_m) < 0.1);
+    }
+    close_paged(p);
+}
+
 static struct lm_position in_page_5(const struct paged *p)
 {
     return (struct lm_position){p->pages->page[5].south + 7, p->pages->page[5].west + 9};

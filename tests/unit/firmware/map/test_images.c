@@ -659,3 +659,66 @@ TEST(a_picture_begins_with_the_finest_image_that_it_touches)
     assert_int_equal(lm_images_at(b->images, 2, there), 1);
     close_fixture(f);
 }
+
+/* Half of an extent in degrees, and those of the tiles of a finest level with shift 9. */
+struct extent {
+    double latitude_deg, longitude_deg, north_deg, east_deg;
+};
+
+/* True if both have a place in common when the first is so much larger on each side. */
+static bool meet(const struct extent *a, const struct extent *b, double north_deg, double east_deg)
+{
+    const double apart_deg = fabs(remainder(a->longitude_deg - b->longitude_deg, 360));
+    return fabs(a->latitude_deg - b->latitude_deg) < a->north_deg + b->north_deg + north_deg &&
+           apart_deg < a->east_deg + b->east_deg + east_deg;
+}
+
+/* Bands and pictures anywhere, in every zone, across the antimeridian and Greenwich. Tiles decide:
+ * where two of them more or less would, nothing is promised. */
+TEST(an_image_is_touched_by_what_comes_near_its_tiles_anywhere)
+{
+    static struct lm_db images[2], view;
+    uint32_t touched = 0, missed = 0;
+    images[0].shift0 = THEATRE_SHIFT;
+    images[0].band_count = 1;
+    images[1].shift0 = WORLD_SHIFT;
+    view.shift0 = THEATRE_SHIFT;
+    for (int i = 0; i < 20000; i++) {
+        const double latitude_deg = 160.0 * rand() / RAND_MAX - 80;
+        const double turned_deg = i % 3 * 90 + 30.0 * rand() / RAND_MAX - 15;
+        const uint32_t side_log2 = THEATRE_SHIFT + LM_TILE_CELLS_LOG2;
+        const uint32_t row = (hs_bam(latitude_deg) + FX_BAM_90) >> side_log2;
+        const uint8_t zone = (uint8_t)lm_db_zone(hs_bam(latitude_deg));
+        const double tile_deg = 360 / 4294967296.0 * (1u << side_log2);
+        const double east_tile_deg = tile_deg * (1u << zone);
+        const uint32_t column = hs_bam(turned_deg) >> (side_log2 + zone);
+        const struct lm_band band = {.lod = 0,
+                                     .zone = zone,
+                                     .row0 = row,
+                                     .rows = (uint16_t)(1 + rand() % 9),
+                                     .column0 = column,
+                                     .columns = (uint16_t)(1 + rand() % 90)};
+        images[0].bands[0] = band;
+        const struct extent map = {row * tile_deg - 90 + band.rows * tile_deg / 2,
+                                   (column + band.columns / 2.0) * east_tile_deg,
+                                   band.rows * tile_deg / 2, band.columns * east_tile_deg / 2};
+        const uint32_t reach_m = 100 + (uint32_t)rand() % 9000;
+        const double north_deg = reach_m / 111320.0;
+        const struct extent picture = {
+            map.latitude_deg + 12 * tile_deg * (2.0 * rand() / RAND_MAX - 1),
+            map.longitude_deg + 90 * east_tile_deg * (2.0 * rand() / RAND_MAX - 1), north_deg,
+            north_deg / cos(latitude_deg * 0.017453)};
+        const struct lm_position at = {hs_bam(picture.latitude_deg),
+                                       hs_bam(remainder(picture.longitude_deg, 360))};
+        view.finest = 77;
+        lm_images_look(&view, images, 2, at, reach_m);
+        if (meet(&map, &picture, -2 * tile_deg, -2 * east_tile_deg)) {
+            assert_int_equal(view.finest, 0);
+            touched++;
+        } else if (!meet(&map, &picture, 2 * tile_deg, 2 * east_tile_deg)) {
+            assert_int_equal(view.finest, WORLD_LOD);
+            missed++;
+        }
+    }
+    assert_true(touched > 5000 && missed > 2000);
+}

@@ -235,6 +235,30 @@ TEST_WITH(the_checksum_of_a_section_that_takes_too_long_is_not_asked_for, erase,
     assert_int_equal(verdict_of_section(0, LM_SLOT_CHECKED_BYTES + 1, false), LM_SLOT_FLOWN);
 }
 
+/* All sections together take no longer: of two that each would fit, the second is left out. */
+TEST_WITH(the_checksums_of_a_slot_take_no_longer_than_those_of_its_room, erase, NULL)
+{
+    struct lm_image_header header;
+    for (uint64_t more = 0; more < 2; more++) {
+        uint64_t room = LM_SLOT_CHECKED_BYTES;
+        fill(0, 0, 1);
+        memcpy(&header, images[0].bytes, sizeof header);
+        for (uint32_t i = 0; i < header.section_count; i++) {
+            room -= header.sections[i].bytes <= room ? header.sections[i].bytes : 0;
+        }
+        header.image_bytes = record_at[0];
+        const uint64_t half = room / 2, first = images[0].size, second = first + half;
+        header.sections[header.section_count++] =
+            (struct lm_image_section){.type = LM_IMAGE_SEAL,
+                                      .crc = fx_crc32c(0, slot_at(0) + first, half),
+                                      .offset = first,
+                                      .bytes = half};
+        header.sections[header.section_count++] = (struct lm_image_section){
+            .type = LM_IMAGE_SEAL, .crc = 1, .offset = second, .bytes = room - half + more};
+        assert_int_equal(verdict_of_header(&header), more ? LM_SLOT_FLOWN : LM_SLOT_DAMAGED);
+    }
+}
+
 /* A header that says something else when it is read once more, with the same checksum. */
 static struct {
     uint32_t reads, section_count;

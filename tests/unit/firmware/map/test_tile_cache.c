@@ -449,6 +449,38 @@ TEST(of_a_top_that_is_too_large_the_nine_tiles_around_the_aircraft_are_kept)
     }
 }
 
+/* Columns are counted from Greenwich: in each zone a map across it has the last and the first. */
+TEST(the_coarsest_level_is_resident_whole_across_greenwich)
+{
+    static const double latitudes_deg[] = {0, 46, 62, -74, 80, 85};
+    for (size_t i = 0; i < sizeof latitudes_deg / sizeof latitudes_deg[0]; i++) {
+        struct fixture *f = calloc(1, sizeof *f);
+        struct tiny_spec spec = tiny_spec_at(latitudes_deg[i], 0);
+        uint32_t tiles = 0, wrapped = 0;
+        spec.cell = soil;
+        spec.rows = 2;
+        spec.columns = SIDE;
+        spec.level_count = 1;
+        assert_int_equal(tiny_image_build(&f->image, &spec), 0);
+        memory_flash_open(&f->flash, f->image.bytes, f->image.size);
+        assert_int_equal(open_cache(f), LM_OK);
+        assert_true(f->cache.is_top_resident);
+        for (uint32_t b = 0; b < f->db.band_count; b++) {
+            const struct lm_band *band = &f->db.bands[b];
+            const uint32_t columns = 1u << (32 - 15 - band->zone); /* round the Earth, of shift 9 */
+            for (uint32_t t = 0; t < band->rows * band->columns; t++, tiles++) {
+                const uint32_t row = band->row0 + t / band->columns;
+                const uint32_t column = band->column0 + t % band->columns;
+                wrapped += column >= columns;
+                assert_non_null(lm_tile_cache_find(&f->cache, 0, row, column % columns));
+            }
+        }
+        assert_int_equal(f->cache.count.tiles_read, tiles);
+        assert_true(wrapped > 0 && wrapped < tiles);
+        free_fixture(f);
+    }
+}
+
 TEST(what_is_kept_around_the_aircraft_outlasts_what_is_looked_up_elsewhere)
 {
     struct fixture *f = make_wide_fixture(46, 11);

@@ -194,6 +194,46 @@ TEST(what_is_no_wood_has_the_nearer_code_of_its_height)
     free(f);
 }
 
+/* A tile without any data, filled with a wood whose tops rise and fall from cell to cell. */
+static struct fixture *make_wood(uint32_t row, uint32_t column)
+{
+    struct fixture *f = prepare(2);
+    f->tile.row = row;
+    f->tile.column = column;
+    f->source.row = row >> 2;
+    f->source.column = column >> 2;
+    for (uint32_t r = 0; r < LM_TILE_POINTS; r++) {
+        for (uint32_t c = 0; c < LM_TILE_POINTS; c++) {
+            f->tile.points[r][c].cell = no_data;
+            f->source.points[r][c].cell =
+                (uint16_t)(100 << 8 | TINY_TREES << 4 | (5 + (r + c) % 2));
+        }
+    }
+    fill(f, 2);
+    return f;
+}
+
+/* The border of a tile is its neighbour's first cells: within a source, trees are drawn there once.
+ */
+TEST(both_tiles_at_a_border_have_the_same_trees_there)
+{
+    struct fixture *west = make_wood(ROW, COLUMN - 2), *east = make_wood(ROW, COLUMN - 1);
+    struct fixture *north = make_wood(ROW + 1, COLUMN - 2);
+    uint32_t changes = 0;
+    for (uint32_t i = 0; i < LM_TILE_POINTS; i++) {
+        for (uint32_t k = 0; k < 2; k++) {
+            const uint32_t last = LM_TILE_CELLS + k;
+            assert_int_equal(west->tile.points[i][last].cell, east->tile.points[i][k].cell);
+            assert_int_equal(west->tile.points[last][i].cell, north->tile.points[k][i].cell);
+        }
+        changes += i > 0 && west->tile.points[i][65].cell != west->tile.points[i - 1][65].cell;
+    }
+    assert_true(changes > 10);
+    free(west);
+    free(east);
+    free(north);
+}
+
 static int32_t post_m_q6(const struct lm_tile *t, uint32_t row, uint32_t column)
 {
     return t->base_m_q6 + (t->points[row][column].post << t->post_shift);

@@ -60,6 +60,17 @@ TEST(a_key_with_a_long_meaning_acts_when_let_go_or_once_when_held)
     assert_int_equal(longs, 1);
 }
 
+/* A release whose press was lost, or that comes twice, is none of a key. */
+TEST(a_key_that_is_let_go_and_was_not_down_does_not_act)
+{
+    struct lm_keys keys = {0};
+    assert_false(lm_keys_up(&keys, BUTTON, 1000));
+    lm_keys_down(&keys, BUTTON, LM_KEY_HAS_LONG, 2000);
+    assert_false(lm_keys_up(&keys, BUTTON + 1, 3000));
+    assert_true(lm_keys_up(&keys, BUTTON, 4000));
+    assert_false(lm_keys_up(&keys, BUTTON, 5000));
+}
+
 TEST(a_stuck_key_is_counted_once_and_means_nothing_until_it_is_let_go)
 {
     struct lm_keys keys = {0};

@@ -74,6 +74,18 @@ TEST(the_scale_and_the_sector_stay_as_they_are_over_a_patch)
     }
 }
 
+/* Back in the sector it is the mode that was chosen there. */
+TEST(the_mode_key_of_a_patch_leads_back_and_chooses_nothing)
+{
+    struct lm_page p = page_in(LM_FORMAT_RADAR, LM_PICTURE_PATCH, LM_FOV_NORM);
+    const struct lm_page before = p;
+    assert_int_equal(press_key(&p, 1, false), LM_EFFECT_SECTOR | LM_EFFECT_TONE);
+    assert_memory_equal(&p, &before, sizeof p);
+    p.picture = LM_PICTURE_SECTOR;
+    press_key(&p, 1, false);
+    assert_int_not_equal(p.mode, before.mode);
+}
+
 /* A window has no scan of its own; with the field NORM there are as many as the table has. */
 TEST(the_azimuth_is_chosen_in_norm_alone)
 {
