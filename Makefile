@@ -55,11 +55,12 @@ all: $(PROGRAMS) ## Build every program, without running anything
 # How long a target takes has a goal (tests/figures/goals.txt), and is kept.
 begins = mkdir -p build && date +%s >build/$(1).began
 lasted = echo "$$(($$(date +%s) - $$(cat build/$(1).began))) s $(2)" | python3 -B tests/figures/figures.py --keep $(1)
-RUN_PROGRAMS := $(addprefix $(O)/bin/landmass-,db nav scene sim target)
+RUN_PROGRAMS := $(addprefix $(O)/bin/landmass-,db scene)
+RUN_LATER    := $(addprefix $(O)/bin/landmass-,nav sim target)
 run: deps ## Build what it needs, make the database of the built-in scene, fly over it, leave pictures
 	@$(call begins,run)
 	@$(MAKE) --no-print-directory -j$(CORES) $(RUN_PROGRAMS)
-	@sh host-sim/run/run.sh $(O)
+	@sh host-sim/run/run.sh $(O) $(MAKE) --no-print-directory -j$(CORES) $(RUN_LATER)
 	@$(call lasted,run,from the packages to the pictures)
 
 check: deps ## Build and run every test; ends in "N passed, N failed, N skipped"
