@@ -335,39 +335,52 @@ TEST_WITH(a_chip_without_a_lit_pixel_stands_on_no_slope, set_up, tear_down_signa
 
 /* A patch that ends a few cells before or behind the target: its shadow and what is lit of it go as
  * far as the patch does. */
-TEST_WITH(a_chip_lies_over_the_ends_of_a_patch_as_far_as_it_goes, set_up, tear_down_signature_world)
+/* A patch of 64 cells, and `overscan` before and behind it that are traced as well. */
+static void check_ends(struct fixture *f, uint32_t overscan)
 {
-    struct fixture *f = *state;
     static int32_t elevation_m_q14[LM_CELLS_ROOM];
     static int16_t level_q8[LM_CELLS_ROOM];
-    uint32_t lit = 0, dark = 0;
-    choose(f);
-    assert_true(serve_chips(&f->world));
-    slope_of(elevation_m_q14, 0.05);
+    uint32_t lit = 0, dark = 0, dark_behind = 0;
+    slope_of(elevation_m_q14, 0);
     for (int off_m = -60; off_m <= 60; off_m++) {
         struct lm_geo_origin origin;
         struct lm_patch_geometry g = geometry_of(64);
+        g.overscan = overscan;
+        g.traced = g.cells + 2 * overscan;
         lm_geo_set_origin(&origin, centre);
         g.centre = lm_geo_direct(&origin, off_m < 0 ? FX_BAM_DEG(270) : FX_BAM_90,
                                  (uint32_t)abs(off_m) * 256);
         lm_target_patch_set(&f->patch, &f->candidates, &g);
         const uint32_t middle = (uint32_t)f->patch.scatterer[0].line;
-        lm_target_patch_lean(&f->patch, middle, elevation_m_q14, &g);
+        const int32_t *elevation_of_patch_m_q14 = elevation_m_q14 + overscan;
+        lm_target_patch_lean(&f->patch, middle, elevation_of_patch_m_q14, &g);
         for (uint32_t line = middle - 8; line <= middle + 8; line++) {
             for (int i = 0; i < LM_CELLS_ROOM; i++) {
                 level_q8[i] = LEVEL_Q8;
             }
-            lm_target_patch_shade(&f->patch, line, &g, elevation_m_q14, level_q8);
+            lm_target_patch_shade(&f->patch, line, &g, elevation_of_patch_m_q14,
+                                  level_q8 + overscan);
             for (int i = 0; i < LM_CELLS_ROOM; i++) {
                 dark += level_q8[i] < LEVEL_Q8;
-                assert_true(level_q8[i] == LEVEL_Q8 || i < (int)g.cells);
+                dark_behind += level_q8[i] < LEVEL_Q8 && i >= (int)(overscan + g.cells);
+                assert_true(level_q8[i] == LEVEL_Q8 || i < (int)g.traced);
             }
-            lm_target_patch_add_chips(&f->patch, line, &g, elevation_m_q14, level_q8);
+            lm_target_patch_add_chips(&f->patch, line, &g, elevation_of_patch_m_q14,
+                                      level_q8 + overscan);
             for (int i = 0; i < LM_CELLS_ROOM; i++) {
                 lit += level_q8[i] > LEVEL_Q8;
-                assert_true(level_q8[i] == LEVEL_Q8 || i < (int)g.cells);
+                assert_true(level_q8[i] == LEVEL_Q8 || i < (int)g.traced);
             }
         }
     }
-    assert_true(lit > 100 && dark > 1000);
+    assert_true(lit > 100 && dark > 1000 && (dark_behind > 0) == (overscan > 0));
+}
+
+TEST_WITH(a_chip_lies_over_the_ends_of_a_patch_as_far_as_it_goes, set_up, tear_down_signature_world)
+{
+    struct fixture *f = *state;
+    choose(f);
+    assert_true(serve_chips(&f->world));
+    check_ends(f, 0);
+    check_ends(f, 8);
 }

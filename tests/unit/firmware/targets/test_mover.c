@@ -481,7 +481,8 @@ static double hill(void *ctx, const struct tiny_place *p)
     return 300 + p->east_m / 20;
 }
 
-TEST(a_target_above_the_ground_stands_on_the_map_wherever_it_has_gone)
+/* A target 25 m high goes east over a hill: above the ground, or above the sea. */
+static void check_heights(bool is_above_ground)
 {
     struct tiny_map map;
     struct tiny_spec spec = tiny_spec_at(46, 11);
@@ -491,7 +492,7 @@ TEST(a_target_above_the_ground_stands_on_the_map_wherever_it_has_gone)
     tiny_map_open(&map, &spec, 32);
     struct lm_target t = moving_point(46, 11, 90, 10, 2000);
     t.elevation_m_q6 = 25 * 64;
-    t.flags = LM_TARGET_ABOVE_GROUND;
+    t.flags = is_above_ground ? LM_TARGET_ABOVE_GROUND : 0;
     seal_target(&t);
     const struct lm_target_set set = {.items = &t, .count = 1};
     for (uint64_t seconds = 0; seconds <= 200; seconds += 50) {
@@ -504,8 +505,18 @@ TEST(a_target_above_the_ground_stands_on_the_map_wherever_it_has_gone)
         tiny_map_read_tiles(&map);
         candidates.is_chosen = false;
         lm_target_candidates_refresh(&candidates, &set, &scene);
-        const double expected_m = 325 + (double)seconds * 10 / 20;
+        const double expected_m = is_above_ground ? 325 + (double)seconds * 10 / 20 : 25;
         assert_true(fabs(candidates.candidate[0].elevation_m_q6 / 64.0 - expected_m) < 1);
     }
     tiny_map_close(&map);
+}
+
+TEST(a_target_above_the_ground_stands_on_the_map_wherever_it_has_gone)
+{
+    check_heights(true);
+}
+
+TEST(a_target_above_the_sea_stays_as_high_wherever_it_has_gone)
+{
+    check_heights(false);
 }

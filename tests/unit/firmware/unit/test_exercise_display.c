@@ -246,7 +246,12 @@ TEST(windows_meet_too)
         fly_both(&p, 4);
         fly_both(&p, 16);
         fly_and_compare(&p, 16);
-        assert_true(lm_sector_is_window(&p.b.r->unit.picture.sector));
+        const struct lm_picture *picture = &p.b.r->unit.picture;
+        const struct lm_sector *s = &picture->sector;
+        assert_true(lm_sector_is_window(s));
+        const uint64_t turn_us = picture->turn.period_us - 1, quarter_us = S / 4;
+        assert_int_equal(turn_us % quarter_us, 0);
+        assert_in_range(turn_us - s->lines * lm_sector_line_us(s), 0, quarter_us - 1);
         end_pair(&p);
     }
 }

@@ -3,6 +3,8 @@
 #include "lm/track.h"
 #include "unit_rig.h"
 
+#include <string.h>
+
 /* A bus that keeps some identifiers to itself, once it is told to. */
 struct sieve {
     int (*receive)(void *ctx, struct lm_can_frame *frame);
@@ -185,4 +187,14 @@ TEST(old_weather_of_the_bus_is_said_and_weather_out_of_range_refused)
     assert_int_equal(lm_unit_weather_command(&r->unit.weather, &worse, r->now_us), LM_ERR_RANGE);
     assert_memory_equal(&r->unit.weather.commanded, &before, sizeof before);
     free_rig(r);
+}
+
+TEST(weather_begins_fair_whatever_its_memory_held)
+{
+    static struct lm_unit_weather fair, other;
+    lm_unit_weather_init(&fair);
+    memset(&other, 0xA5, sizeof other);
+    lm_unit_weather_init(&other);
+    assert_memory_equal(&other, &fair, sizeof fair);
+    assert_int_equal(other.now.sea_state, LM_SEA_STATE_OF_IMAGE);
 }
