@@ -5,6 +5,7 @@
 
 #include "lm/chip_sector.h"
 #include "lm/chip_slope.h"
+#include "lm/level.h"
 #include "lm/target_patch.h"
 
 #include <stdlib.h>
@@ -383,4 +384,55 @@ TEST_WITH(a_chip_lies_over_the_ends_of_a_patch_as_far_as_it_goes, set_up, tear_d
     assert_true(serve_chips(&f->world));
     check_ends(f, 0);
     check_ends(f, 8);
+}
+
+/* Middle of the cells that a chip adds to the lines beside its own, where the ground is `higher_m`
+ * higher than below its origin. */
+static double middle_beside(struct fixture *f, double higher_m, bool is_known, bool is_displaced)
+{
+    static int32_t elevation_m_q14[LM_CELLS_ROOM];
+    static int16_t level_q8[LM_CELLS_ROOM];
+    const struct lm_patch_geometry g = geometry_of(64);
+    double sum = 0, cells = 0;
+    lm_target_patch_set(&f->patch, &f->candidates, &g);
+    const uint32_t line = (uint32_t)f->patch.scatterer[0].line;
+    slope_of(elevation_m_q14, 0);
+    if (is_known) {
+        lm_target_patch_lean(&f->patch, line, elevation_m_q14, &g);
+    }
+    f->patch.scatterer[0].is_displaced = is_displaced;
+    for (int i = 0; i < LM_CELLS_ROOM; i++) {
+        elevation_m_q14[i] = (int32_t)(higher_m * 16384);
+    }
+    for (uint32_t beside = line - 8; beside <= line + 8; beside++) {
+        for (int i = 0; i < LM_CELLS_ROOM; i++) {
+            level_q8[i] = LM_LEVEL_SHADOW;
+        }
+        if (beside != line) {
+            lm_target_patch_add_chips(&f->patch, beside, &g, elevation_m_q14, level_q8);
+        }
+        for (int i = 0; i < LM_CELLS_ROOM; i++) {
+            sum += level_q8[i] > LM_LEVEL_SHADOW ? i : 0;
+            cells += level_q8[i] > LM_LEVEL_SHADOW;
+        }
+    }
+    assert_true(cells > 0);
+    return sum / cells;
+}
+
+/* Ground that is higher across is laid over, by up to one in one. What is displaced stands
+ * elsewhere, and of what has not been met yet nobody knows the ground. */
+TEST_WITH(a_chip_leans_on_the_ground_across_where_it_stands_and_is_known, set_up,
+          tear_down_signature_world)
+{
+    struct fixture *f = *state;
+    choose(f);
+    assert_true(serve_chips(&f->world));
+    for (int known = 0; known < 2; known++) {
+        for (int displaced = 0; displaced < 2; displaced++) {
+            const double flat = middle_beside(f, 0, known, displaced);
+            const double high = middle_beside(f, 50, known, displaced);
+            assert_true(known && !displaced ? high < flat : high == flat);
+        }
+    }
 }
