@@ -267,6 +267,15 @@ TEST(automatic_range_goes_up_from_095_and_down_below_0425)
         c.offset.y_px_q8 = -25600; /* flown past: stays */
         assert_int_equal(lm_cursor_wants_range(&c, RANGE_M), 0);
     }
+    /* To the metre, on scales of whole nautical miles. */
+    for (uint32_t nm = 5; nm <= 160; nm++) {
+        const uint32_t scale_m = nm * 1852;
+        for (uint32_t m = 1; m <= scale_m; m++) {
+            const struct lm_cursor c = {.range_m = m, .offset = {0, 25600}};
+            const int wanted = m * 20 >= scale_m * 19 ? 1 : m * 40 < scale_m * 17 ? -1 : 0;
+            assert_int_equal(lm_cursor_wants_range(&c, scale_m), wanted);
+        }
+    }
     /* Between two scales no cursor makes it swing. */
     for (uint32_t m = 1; m < 200000; m += 7) {
         const struct lm_cursor c = {.range_m = m, .offset = {0, 25600}};

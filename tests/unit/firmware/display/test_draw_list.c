@@ -167,6 +167,23 @@ TEST_WITH(text_is_drawn_in_the_blocks_that_a_pen_keeps_to_and_in_no_other, set_u
     assert_true(inked(f->noted) > 20 && inked(f->noted) < inked(f->now));
 }
 
+TEST_WITH(every_character_is_the_same_in_the_blocks_of_a_pen_as_without_any, set_up, tear_down)
+{
+    struct fixture *f = *state;
+    struct lm_pen pen = pen_on(f->now), within = pen_on(f->noted);
+    within.within = &f->all;
+    for (int32_t row = 0; row < 4; row++) {
+        char words[17] = {0};
+        for (int i = 0; i < 16; i++) {
+            words[i] = (char)(' ' + row * 16 + i);
+        }
+        lm_draw_text(&pen, 5, 10 + 30 * row, words);
+        lm_draw_text(&within, 5, 10 + 30 * row, words);
+    }
+    assert_memory_equal(f->now, f->noted, sizeof f->now);
+    assert_true(inked(f->now) > 500);
+}
+
 TEST_WITH(lines_are_drawn_in_the_blocks_that_a_pen_keeps_to_and_in_no_other, set_up, tear_down)
 {
     struct fixture *f = *state;
