@@ -2,6 +2,7 @@
 
 #include "hs/error.h"
 
+#include <cblas.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -39,6 +40,9 @@ int nm_simulator_open(struct nm_simulator *s, const struct nm_architecture *arch
     const int side = cells / NM_CELLS_PER_PIXEL;
     const size_t in = (size_t)cells * (size_t)cells * sizeof(double);
     const size_t out = (size_t)side * (size_t)side * sizeof(double);
+    /* The order of sums, and so the last bit, depends on the threads. The matrices are so small
+     * that two of them take twice as long. */
+    openblas_set_num_threads(1);
     *s = (struct nm_simulator){
         .em = {.architecture = architecture},
         .side_px = side,

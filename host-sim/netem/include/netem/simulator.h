@@ -30,7 +30,8 @@ struct nm_simulator {
     double *pixels, *d_pixels;   /* owned: the chip; side_px^2 */
 };
 
-/* For pictures of cells x cells; even. Returns 0, or -1 with the error reported. */
+/* For pictures of cells x cells; even. From here on the matrix library has one thread. Returns 0,
+ * or -1 with the error reported. */
 int nm_simulator_open(struct nm_simulator *s, const struct nm_architecture *architecture,
                       int cells);
 void nm_simulator_close(struct nm_simulator *s);

@@ -7,6 +7,7 @@
 #include "netem/surfaces.h"
 #include "support.h"
 
+#include <cblas.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -396,6 +397,16 @@ TEST(the_kernel_learns_nothing_where_the_radar_has_no_response)
         assert_true(fabs(learned[i] - w.kernel[i]) <= most * w.kernel[i] / peak + 1e-15);
     }
     close_world(&w);
+}
+
+/* With two, sums of matrices come in another order. */
+TEST(a_simulator_has_one_thread_for_its_matrices)
+{
+    struct nm_simulator s;
+    openblas_set_num_threads(2);
+    assert_int_equal(nm_simulator_open(&s, nm_architectures[0], 16), 0);
+    assert_int_equal(openblas_get_num_threads(), 1);
+    nm_simulator_close(&s);
 }
 
 TEST(a_training_that_was_killed_goes_on_to_the_same_bits)
