@@ -408,6 +408,32 @@ TEST(rain_on_another_side_of_the_earth_is_left_out)
     free(w);
 }
 
+/* What stands at the edge of a shower, in its middle and behind it has none, half and all of its
+ * rain before it. */
+TEST(a_scatterer_loses_by_the_rain_before_it_and_no_more)
+{
+    static struct lm_target_patch points;
+    struct world *w = make_world(30000, 5000, 5);
+    const int32_t cells[3] = {CELLS / 2 - 800, CELLS / 2, CELLS / 2 + 800};
+    add_rain(w, 30000, 0, 3000, 40);
+    lm_patch_rain_find(&w->rain, &w->environment, &w->radar, w->antenna, 0);
+    lm_patch_rain_set(&w->rain, &w->radar, &w->geometry, LM_DB_Q8(-46));
+    memset(&points, 0, sizeof points);
+    points.scatterer_count = 3;
+    for (int i = 0; i < 3; i++) {
+        points.scatterer[i] = (struct lm_patch_scatterer){.line = LINES / 2, .cell = cells[i]};
+    }
+    lm_patch_rain_weaken(&w->rain, &w->geometry, &points);
+    const double all_db = -points.scatterer[2].level_db_q8 / 256.0;
+    print_message("# before, in the middle and behind: %.2f, %.2f and %.2f dB\n",
+                  -points.scatterer[0].level_db_q8 / 256.0,
+                  -points.scatterer[1].level_db_q8 / 256.0, all_db);
+    assert_int_equal(points.scatterer[0].level_db_q8, 0);
+    assert_true(all_db > 1);
+    assert_true(fabs(-points.scatterer[1].level_db_q8 / 256.0 - all_db / 2) < 0.1 * all_db);
+    free(w);
+}
+
 /* All of the rain lies before a scatterer that is displaced beyond any range. */
 TEST(a_scatterer_however_far_has_no_more_loss_than_all_the_rain)
 {

@@ -108,6 +108,31 @@ TEST(below_gamma_1_a_level_gets_the_grey_of_the_nearest_step)
     }
 }
 
+/* As a machine with vectors reads them: the low byte of a step is its place in a piece and what of
+ * it lies before the piece. */
+TEST(straight_pieces_have_the_greys_of_the_table_where_a_curve_has_them)
+{
+    int with_pieces = 0;
+    for (int n = 0; n < CONFIGS; n++) {
+        const struct lm_tone_config *c = &configs[n];
+        struct lm_tone tone;
+        assert_int_equal(lm_tone_set(&tone, c), LM_OK);
+        const int32_t span_db_q8 = c->white_db_q8 - c->black_db_q8;
+        const bool is_gentle =
+            span_db_q8 >= 4 * 256 && c->gamma_q8 >= 256 && c->gamma_q8 <= 3 * 256;
+        assert_int_equal(tone.has_pieces, is_gentle);
+        const uint32_t white = (uint32_t)span_db_q8 >> tone.step_log2;
+        for (uint32_t step = 0; tone.has_pieces && step < white; step++) {
+            const uint32_t piece = step / LM_TONE_PIECE_STEPS;
+            const uint32_t base = tone.pieces[0][piece] | (uint32_t)tone.pieces[1][piece] << 8;
+            const uint32_t grey_q8 = (base + (step & 255) * tone.pieces[2][piece]) & 0xffff;
+            assert_int_equal(grey_q8 >> 8, tone.grey[step]);
+        }
+        with_pieces += tone.has_pieces;
+    }
+    assert_in_range(with_pieces, 3, CONFIGS - 1);
+}
+
 TEST(black_and_below_is_black_white_and_above_is_white)
 {
     for (int n = 0; n < CONFIGS; n++) {
