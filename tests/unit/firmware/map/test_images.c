@@ -329,6 +329,23 @@ TEST(a_town_returns_what_its_own_image_says_at_every_level)
     close_fixture(f);
 }
 
+TEST(the_view_has_the_gains_of_the_finest_image_that_has_a_level)
+{
+    struct fixture *f = open_fixture_of(true, false);
+    const struct lm_db *view = &f->both.db, *theatre = &f->both.images[0];
+    assert_true(view->lod_count > theatre->lod_count);
+    for (uint8_t lod = 0; lod < view->lod_count; lod++) {
+        const bool is_theatre = lod < theatre->lod_count;
+        const struct lm_db *image = &f->both.images[is_theatre ? 0 : 1];
+        const uint32_t own = is_theatre ? lod : (uint32_t)lod - WORLD_LOD;
+        for (uint32_t i = 0; i < LM_DB_CLASSES; i++) {
+            assert_int_equal(view->classes.entry[i].lod_gain_db_q8[lod],
+                             image->classes.entry[i].lod_gain_db_q8[own]);
+        }
+    }
+    close_fixture(f);
+}
+
 static uintptr_t broken_from, broken_to;
 
 static bool fetch_unless_broken(void *to, const uint8_t *from, uint32_t length)
