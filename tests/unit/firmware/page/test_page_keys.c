@@ -136,6 +136,21 @@ TEST(reset_has_tone_palette_and_beam_taken_anew)
     assert_false(p.is_pencil || p.palette.is_night || p.black_db != 0);
 }
 
+TEST(tilt_is_told_in_tenths_of_a_degree_and_nought_is_no_less_than_nothing)
+{
+    static const struct {
+        int16_t tenths;
+        const char *words;
+    } cases[] = {{-125, "-12.5"}, {-1, "-0.1"}, {0, "+0.0"}, {1, "+0.1"}, {120, "+12.0"}};
+    struct lm_page p = page_in(LM_FORMAT_CNTL, LM_PICTURE_SECTOR, LM_FOV_NORM);
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+        struct lm_label label;
+        p.tilt_tenths = cases[i].tenths;
+        lm_page_label(&p, 1, &label);
+        assert_string_equal(label.line[1], cases[i].words);
+    }
+}
+
 TEST(a_word_too_long_for_a_label_is_cut_at_its_fifth_letter)
 {
     struct lm_label label;
