@@ -342,6 +342,25 @@ def each_malfunction_breaks_the_picture_and_is_mended(p, g):
     p.wait("malfunctions.size === 0")
 
 
+def buttons_stay_where_they_are_whatever_is_told(p, _):
+    p.tab("malfunctions")
+    places = ("const top = document.getElementById('malfunction-list').getBoundingClientRect().y; "
+              "return [...document.querySelectorAll('#malfunction-list button')].map((one) => { "
+              "const at = one.getBoundingClientRect(); return [at.x, at.y - top, at.height].map(Math.round); })")
+    before = p.js(places)
+    assert len(before) == 20
+    for kind, row in enumerate(p.b.driver.find_elements("css selector", "#malfunction-list tr")):
+        row.find_element("class name", "break").click()
+        p.wait(f"malfunctions.has({kind})")
+    time.sleep(0.4)
+    assert p.js(places) == before
+    p.js("station.keeper.kept.clear()")  # as if another page told it, until this one takes over
+    p.b.until("[...document.querySelectorAll('#malfunction-list .told')].some((one) => one.textContent.includes('another'))")
+    assert p.js(places) == before
+    wide = p.js("const right = document.getElementById('right'); return right.scrollWidth - right.clientWidth")
+    assert wide <= 0, wide
+
+
 def a_dead_key_does_nothing(p, g):
     p.tab("malfunctions")
     p.fill("malfunction-9", 12)
@@ -674,7 +693,8 @@ TESTS = [a_target_is_placed_and_stands_on_the_glass, a_target_that_is_dragged_mo
          a_way_is_gone_with_its_speed, a_target_is_changed_moved_and_removed, all_targets_go_at_once,
          a_target_in_the_middle_of_the_map_has_the_form_and_its_signature, the_buttons_of_the_map_zoom_and_follow,
          rain_is_placed_changed_dragged_and_removed, a_jammer_is_placed_and_fair_weather_ends_it,
-         sea_and_wind_are_told, each_malfunction_breaks_the_picture_and_is_mended, a_dead_key_does_nothing,
+         sea_and_wind_are_told, each_malfunction_breaks_the_picture_and_is_mended,
+         buttons_stay_where_they_are_whatever_is_told, a_dead_key_does_nothing,
          every_key_of_the_bezel_is_obeyed, the_picture_is_held_and_released, mode_range_width_and_gain_are_obeyed,
          cursor_steerpoint_and_patch_go_where_the_map_says, designate_drop_slew_and_knob_are_obeyed,
          the_clock_freezes_runs_jumps_and_has_a_seed, what_cannot_be_is_said_and_not_sent, the_events_are_saved_as_a_file,

@@ -1,4 +1,5 @@
-/* The panel of malfunctions: the ten kinds, each broken and mended by itself. */
+/* The panel of malfunctions: the ten kinds, each broken and mended by itself. Whatever is told of them, buttons stay
+ * where they are: who presses one must not meet another. */
 import {button, find, make, numberOf, say} from './dom.mjs';
 import {MALFUNCTIONS} from './frames.mjs';
 
@@ -24,10 +25,10 @@ export class MalfunctionsPanel {
             }
         };
         const cell = make('td', {}, ...unit ? [amount, ` ${unit}`] : []);
-        return make('tr', {}, make('th', {scope: 'row', text: name}), cell,
+        const head = make('th', {scope: 'row'}, make('span', {text: name}), make('span', {class: 'told'}));
+        return make('tr', {}, head, cell,
             make('td', {}, button('Break', act, {class: 'break', 'aria-label': `break: ${name}`}), ' ',
-                button('Mend', () => commands.mend(kind), {class: 'mend', 'aria-label': `mend: ${name}`})),
-            make('td', {class: 'told'}));
+                button('Mend', () => commands.mend(kind), {class: 'mend', 'aria-label': `mend: ${name}`})));
     }
 
     render() {
@@ -36,8 +37,8 @@ export class MalfunctionsPanel {
             row.classList.toggle('is-broken', Boolean(told));
             row.querySelector('.break').setAttribute('aria-pressed', String(Boolean(told)));
             row.querySelector('.mend').disabled = !told;
-            const amount = told && unit ? `, ${Number(told.amount.toFixed(1))} ${unit}` : '';
-            const words = told ? `broken${amount}, ${this.station.toldBy(`malfunction ${kind}`, told)}` : 'works';
+            const amount = told && unit ? ` ${Number(told.amount.toFixed(1))} ${unit}` : '';
+            const words = told ? `broken${amount}: ${this.station.toldBy(`malfunction ${kind}`, told)}` : 'works';
             say(row.querySelector('.told'), words);
         });
     }
