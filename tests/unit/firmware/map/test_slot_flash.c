@@ -205,17 +205,24 @@ TEST_WITH(an_image_of_a_length_that_reaches_into_the_records_is_not_flown, erase
     assert_int_equal(slots.port.size_bytes, 0);
 }
 
+/* A section more for the image of slot 0, with its checksum or a wrong one. */
+static void add_section(struct lm_image_header *header, uint64_t offset, uint64_t bytes,
+                        bool is_sealed)
+{
+    header->sections[header->section_count++] =
+        (struct lm_image_section){.type = LM_IMAGE_SEAL,
+                                  .crc = is_sealed ? fx_crc32c(0, slot_at(0) + offset, bytes) : 1,
+                                  .offset = offset,
+                                  .bytes = bytes};
+}
+
 /* An image in slot 0 with a section more, of which the firmware needs nothing. */
 static enum lm_slot_verdict verdict_of_section(uint64_t offset, uint64_t bytes, bool is_sealed)
 {
     struct lm_image_header header;
     fill(0, 0, 1);
     memcpy(&header, images[0].bytes, sizeof header);
-    header.sections[header.section_count++] =
-        (struct lm_image_section){.type = LM_IMAGE_SEAL,
-                                  .crc = is_sealed ? fx_crc32c(0, slot_at(0) + offset, bytes) : 1,
-                                  .offset = offset,
-                                  .bytes = bytes};
+    add_section(&header, offset, bytes, is_sealed);
     return verdict_of_header(&header);
 }
 
@@ -248,13 +255,8 @@ TEST_WITH(the_checksums_of_a_slot_take_no_longer_than_those_of_its_room, erase, 
         }
         header.image_bytes = record_at[0];
         const uint64_t half = room / 2, first = images[0].size, second = first + half;
-        header.sections[header.section_count++] =
-            (struct lm_image_section){.type = LM_IMAGE_SEAL,
-                                      .crc = fx_crc32c(0, slot_at(0) + first, half),
-                                      .offset = first,
-                                      .bytes = half};
-        header.sections[header.section_count++] = (struct lm_image_section){
-            .type = LM_IMAGE_SEAL, .crc = 1, .offset = second, .bytes = room - half + more};
+        add_section(&header, first, half, true);
+        add_section(&header, second, room - half + more, false);
         assert_int_equal(verdict_of_header(&header), more ? LM_SLOT_FLOWN : LM_SLOT_DAMAGED);
     }
 }

@@ -402,18 +402,25 @@ TEST(of_a_large_pool_as_many_tiles_are_used_as_there_are_slots)
     free_fixture(f);
 }
 
-/* A map of 64 tiles about a place, of one LOD: more than half of the pool. */
-static struct fixture *make_wide_fixture(double latitude_deg, double longitude_deg)
+/* A map of so many rows of tiles about a place, of one LOD. */
+static struct fixture *make_rows_at(uint8_t rows, double latitude_deg, double longitude_deg)
 {
     struct fixture *f = calloc(1, sizeof *f);
     struct tiny_spec spec = tiny_spec_at(latitude_deg, longitude_deg);
     spec.cell = soil;
-    spec.rows = spec.columns = SIDE;
+    spec.rows = rows;
+    spec.columns = SIDE;
     spec.level_count = 1;
     assert_int_equal(tiny_image_build(&f->image, &spec), 0);
     memory_flash_open(&f->flash, f->image.bytes, f->image.size);
     assert_int_equal(open_cache(f), LM_OK);
     return f;
+}
+
+/* 64 tiles: more than half of the pool. */
+static struct fixture *make_wide_fixture(double latitude_deg, double longitude_deg)
+{
+    return make_rows_at(SIDE, latitude_deg, longitude_deg);
 }
 
 /* Is the tile resident that holds the place so many tiles of shift 9 north and east of another, as
@@ -454,16 +461,8 @@ TEST(the_coarsest_level_is_resident_whole_across_greenwich)
 {
     static const double latitudes_deg[] = {0, 46, 62, -74, 80, 85};
     for (size_t i = 0; i < sizeof latitudes_deg / sizeof latitudes_deg[0]; i++) {
-        struct fixture *f = calloc(1, sizeof *f);
-        struct tiny_spec spec = tiny_spec_at(latitudes_deg[i], 0);
+        struct fixture *f = make_rows_at(2, latitudes_deg[i], 0);
         uint32_t tiles = 0, wrapped = 0;
-        spec.cell = soil;
-        spec.rows = 2;
-        spec.columns = SIDE;
-        spec.level_count = 1;
-        assert_int_equal(tiny_image_build(&f->image, &spec), 0);
-        memory_flash_open(&f->flash, f->image.bytes, f->image.size);
-        assert_int_equal(open_cache(f), LM_OK);
         assert_true(f->cache.is_top_resident);
         for (uint32_t b = 0; b < f->db.band_count; b++) {
             const struct lm_band *band = &f->db.bands[b];

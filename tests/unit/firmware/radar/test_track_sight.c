@@ -45,18 +45,26 @@ TEST(ground_without_data_and_off_the_map_returns_nothing)
     tiny_map_close(&map);
 }
 
+/* A strip of ground to the north of 46 N 11 E, 15 km long. */
+static struct tiny_spec strip(double (*elevation_m)(void *ctx, const struct tiny_place *place),
+                              void *ctx)
+{
+    struct tiny_spec spec = tiny_spec_at(46.05, 11);
+    spec.rows = 50;
+    spec.columns = 3;
+    spec.cell = soil;
+    spec.elevation_m = elevation_m;
+    spec.ctx = ctx;
+    return spec;
+}
+
 /* From 800 m the nose points 3 degrees down, along the canyon. By the coarse LOD there is a plain 6
  * to 10 km ahead. Near by there is nothing as high: the canyon's floor is 15 km ahead. */
 TEST(ground_that_is_there_from_far_alone_is_ranged_where_it_was_found)
 {
     const fx_bam_t middle = hs_bam(11) & ~(fx_bam_t)511;
     double middle_deg = hs_degrees(middle);
-    struct tiny_spec spec = tiny_spec_at(46.05, 11);
-    spec.rows = 50;
-    spec.columns = 3;
-    spec.cell = soil;
-    spec.elevation_m = canyon_m;
-    spec.ctx = &middle_deg;
+    struct tiny_spec spec = strip(canyon_m, &middle_deg);
     spec.level_count = 6;
     tiny_map_open(&map, &spec, TILES);
     const struct lm_track_scene s = {
@@ -92,11 +100,7 @@ static double ridge_m(void *ctx, const struct tiny_place *p)
 TEST(a_target_is_seen_above_the_line_over_a_ridge_and_hidden_below_it)
 {
     static struct lm_track track;
-    struct tiny_spec spec = tiny_spec_at(46.05, 11);
-    spec.rows = 50;
-    spec.columns = 3;
-    spec.cell = soil;
-    spec.elevation_m = ridge_m;
+    const struct tiny_spec spec = strip(ridge_m, NULL);
     tiny_map_open(&map, &spec, TILES);
     const struct lm_track_scene s = {
         .radar = &lm_radar_default,
@@ -133,12 +137,7 @@ static int32_t plain_signal_db_q8(double plain_m)
     const struct lm_target_set none = {0};
     const struct lm_environment fair = {0};
     const struct lm_malfunctions sound = {0};
-    struct tiny_spec spec = tiny_spec_at(46.05, 11);
-    spec.rows = 50;
-    spec.columns = 3;
-    spec.cell = soil;
-    spec.elevation_m = plateau_m;
-    spec.ctx = &plain_m;
+    const struct tiny_spec spec = strip(plateau_m, &plain_m);
     tiny_map_open(&map, &spec, TILES);
     const struct lm_track_scene s = {.radar = &lm_radar_default,
                                      .tiles = &map.tiles,

@@ -336,13 +336,14 @@ TEST_WITH(a_chip_without_a_lit_pixel_stands_on_no_slope, set_up, tear_down_signa
 
 /* A patch that ends a few cells before or behind the target: its shadow and what is lit of it go as
  * far as the patch does. */
-/* A patch of 64 cells, and `overscan` before and behind it that are traced as well. */
-static void check_ends(struct fixture *f, uint32_t overscan)
+/* A patch of 64 cells on ground that rises by so much in each, and `overscan` before and behind it
+ * that are traced as well. */
+static void check_ends(struct fixture *f, double rise_m, uint32_t overscan)
 {
     static int32_t elevation_m_q14[LM_CELLS_ROOM];
     static int16_t level_q8[LM_CELLS_ROOM];
     uint32_t lit = 0, dark = 0, dark_behind = 0;
-    slope_of(elevation_m_q14, 0);
+    slope_of(elevation_m_q14, rise_m);
     for (int off_m = -60; off_m <= 60; off_m++) {
         struct lm_geo_origin origin;
         struct lm_patch_geometry g = geometry_of(64);
@@ -382,8 +383,8 @@ TEST_WITH(a_chip_lies_over_the_ends_of_a_patch_as_far_as_it_goes, set_up, tear_d
     struct fixture *f = *state;
     choose(f);
     assert_true(serve_chips(&f->world));
-    check_ends(f, 0);
-    check_ends(f, 8);
+    check_ends(f, 0.05, 0);
+    check_ends(f, 0, 8);
 }
 
 /* Middle of the cells that a chip adds to the lines beside its own, where the ground is `higher_m`
