@@ -288,6 +288,14 @@ TEST(each_flag_has_a_word_of_its_own_on_the_glass)
     }
 }
 
+static struct lm_surface test_pattern(uint16_t side, const struct lm_palette *palette)
+{
+    const struct lm_surface s = make_surface(side, side);
+    const struct lm_frame frame = lm_frame_of_display(side, side);
+    lm_overlay_test_pattern(&(struct lm_glass){.surface = s, .frame = &frame, .palette = palette});
+    return s;
+}
+
 TEST(the_test_pattern_shows_sixteen_greys_every_colour_and_every_character)
 {
     struct lm_palette palette;
@@ -320,9 +328,7 @@ TEST(the_bars_of_the_test_pattern_have_no_gaps)
 {
     struct lm_palette p;
     lm_palette_set(&p, &(struct lm_palette_config){.tint = 1});
-    const struct lm_surface s = make_surface(512, 512);
-    const struct lm_frame frame = lm_frame_of_display(512, 512);
-    lm_overlay_test_pattern(&(struct lm_glass){.surface = s, .frame = &frame, .palette = &p});
+    struct lm_surface s = test_pattern(512, &p);
     const uint32_t *greys = s.pixels + 120 * s.stride_px, *colours = s.pixels + 380 * s.stride_px;
     for (uint32_t x = 0; x < 512; x++) {
         assert_int_equal(greys[x], p.picture[x * 16 / 512 * 255 / 15]);
@@ -334,17 +340,14 @@ TEST(the_bars_of_the_test_pattern_have_no_gaps)
         const uint32_t i = x * 9 / 512;
         assert_true(colours[x] == own[i] || (i < 8 && colours[x] == own[i + 1]));
     }
-    struct lm_surface done = s;
-    free_surface(&done);
+    free_surface(&s);
 }
 
 TEST(the_rows_of_characters_of_the_test_pattern_stand_further_apart_than_those_of_a_label)
 {
     struct lm_palette p;
     lm_palette_set(&p, &(struct lm_palette_config){0});
-    struct lm_surface s = make_surface(480, 480);
-    const struct lm_frame frame = lm_frame_of_display(480, 480);
-    lm_overlay_test_pattern(&(struct lm_glass){.surface = s, .frame = &frame, .palette = &p});
+    struct lm_surface s = test_pattern(480, &p);
     const struct lm_pen pen = lm_pen_for(&s, p.symbol);
     static const char *const rows[] = {"XYZ", "789", ":;<=>"};
     struct lm_point at[3];
@@ -359,9 +362,7 @@ TEST(below_the_sixteen_greys_of_the_test_pattern_are_all_256_in_order)
 {
     struct lm_palette p;
     lm_palette_set(&p, &(struct lm_palette_config){.tint = 1});
-    struct lm_surface s = make_surface(512, 512);
-    const struct lm_frame frame = lm_frame_of_display(512, 512);
-    lm_overlay_test_pattern(&(struct lm_glass){.surface = s, .frame = &frame, .palette = &p});
+    struct lm_surface s = test_pattern(512, &p);
     const uint32_t *greys = s.pixels + 160 * s.stride_px;
     for (uint32_t x = 0; x < 512; x++) {
         assert_int_equal(greys[x], p.picture[x / 2]);
@@ -375,9 +376,7 @@ TEST(each_column_of_the_test_patterns_bars_has_the_grey_of_its_place)
     struct lm_palette p;
     lm_palette_set(&p, &(struct lm_palette_config){.tint = 1});
     for (uint16_t side = 257; side < 1024; side += 109) {
-        struct lm_surface s = make_surface(side, side);
-        const struct lm_frame frame = lm_frame_of_display(side, side);
-        lm_overlay_test_pattern(&(struct lm_glass){.surface = s, .frame = &frame, .palette = &p});
+        struct lm_surface s = test_pattern(side, &p);
         const uint32_t top = side * 2u / 10, height = side / 10;
         const uint32_t *bars = s.pixels + (top + height / 2) * s.stride_px;
         const uint32_t *all = s.pixels + (top + height + height / 4) * s.stride_px;
@@ -395,9 +394,7 @@ TEST(the_grid_of_the_test_pattern_reaches_from_edge_to_edge_and_its_circles_are_
 {
     struct lm_palette p;
     lm_palette_set(&p, &(struct lm_palette_config){0});
-    struct lm_surface s = make_surface(500, 500);
-    const struct lm_frame frame = lm_frame_of_display(500, 500);
-    lm_overlay_test_pattern(&(struct lm_glass){.surface = s, .frame = &frame, .palette = &p});
+    struct lm_surface s = test_pattern(500, &p);
     for (uint32_t i = 0; i <= 10; i++) {
         const uint32_t at = 499 * i / 10;
         assert_int_equal(s.pixels[20 * s.stride_px + at],

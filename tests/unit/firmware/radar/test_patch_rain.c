@@ -408,51 +408,49 @@ TEST(rain_on_another_side_of_the_earth_is_left_out)
     free(w);
 }
 
+/* What scatterers in these cells of the middle line lose by rain so far away, in a patch 30 km
+ * away. */
+static void find_losses(double rain_m, double radius_m, const int32_t *cells, uint32_t count,
+                        double *loss_db)
+{
+    static struct lm_target_patch points;
+    struct world *w = make_world(30000, 5000, 5);
+    add_rain(w, rain_m, 0, radius_m, 40);
+    lm_patch_rain_find(&w->rain, &w->environment, &w->radar, w->antenna, 0);
+    lm_patch_rain_set(&w->rain, &w->radar, &w->geometry, LM_DB_Q8(-46));
+    assert_int_equal(w->rain.count, 1);
+    memset(&points, 0, sizeof points);
+    points.scatterer_count = count;
+    for (uint32_t i = 0; i < count; i++) {
+        points.scatterer[i] = (struct lm_patch_scatterer){.line = LINES / 2, .cell = cells[i]};
+    }
+    lm_patch_rain_weaken(&w->rain, &w->geometry, &points);
+    for (uint32_t i = 0; i < count; i++) {
+        loss_db[i] = -points.scatterer[i].level_db_q8 / 256.0;
+    }
+    free(w);
+}
+
 /* What stands at the edge of a shower, in its middle and behind it has none, half and all of its
  * rain before it. */
 TEST(a_scatterer_loses_by_the_rain_before_it_and_no_more)
 {
-    static struct lm_target_patch points;
-    struct world *w = make_world(30000, 5000, 5);
     const int32_t cells[3] = {CELLS / 2 - 800, CELLS / 2, CELLS / 2 + 800};
-    add_rain(w, 30000, 0, 3000, 40);
-    lm_patch_rain_find(&w->rain, &w->environment, &w->radar, w->antenna, 0);
-    lm_patch_rain_set(&w->rain, &w->radar, &w->geometry, LM_DB_Q8(-46));
-    memset(&points, 0, sizeof points);
-    points.scatterer_count = 3;
-    for (int i = 0; i < 3; i++) {
-        points.scatterer[i] = (struct lm_patch_scatterer){.line = LINES / 2, .cell = cells[i]};
-    }
-    lm_patch_rain_weaken(&w->rain, &w->geometry, &points);
-    const double all_db = -points.scatterer[2].level_db_q8 / 256.0;
-    print_message("# before, in the middle and behind: %.2f, %.2f and %.2f dB\n",
-                  -points.scatterer[0].level_db_q8 / 256.0,
-                  -points.scatterer[1].level_db_q8 / 256.0, all_db);
-    assert_int_equal(points.scatterer[0].level_db_q8, 0);
-    assert_true(all_db > 1);
-    assert_true(fabs(-points.scatterer[1].level_db_q8 / 256.0 - all_db / 2) < 0.1 * all_db);
-    free(w);
+    double loss_db[3];
+    find_losses(30000, 3000, cells, 3, loss_db);
+    print_message("# before, in the middle and behind: %.2f, %.2f and %.2f dB\n", loss_db[0],
+                  loss_db[1], loss_db[2]);
+    assert_true(loss_db[0] == 0);
+    assert_true(loss_db[2] > 1);
+    assert_true(fabs(loss_db[1] - loss_db[2] / 2) < 0.1 * loss_db[2]);
 }
 
 /* All of the rain lies before a scatterer that is displaced beyond any range. */
 TEST(a_scatterer_however_far_has_no_more_loss_than_all_the_rain)
 {
-    static struct lm_target_patch points;
-    struct world *w = make_world(30000, 5000, 5);
-    int32_t loss_db_q8[2];
-    add_rain(w, 15000, 0, 4000, 40);
-    lm_patch_rain_find(&w->rain, &w->environment, &w->radar, w->antenna, 0);
-    lm_patch_rain_set(&w->rain, &w->radar, &w->geometry, LM_DB_Q8(-46));
-    assert_int_equal(w->rain.count, 1);
-    for (int is_far = 0; is_far < 2; is_far++) {
-        memset(&points, 0, sizeof points);
-        points.scatterer_count = 1;
-        points.scatterer[0] =
-            (struct lm_patch_scatterer){.line = LINES / 2, .cell = is_far ? 1 << 22 : CELLS};
-        lm_patch_rain_weaken(&w->rain, &w->geometry, &points);
-        loss_db_q8[is_far] = -points.scatterer[0].level_db_q8;
-    }
-    assert_true(loss_db_q8[0] > 256);
-    assert_int_equal(loss_db_q8[1], loss_db_q8[0]);
-    free(w);
+    const int32_t cells[2] = {CELLS, 1 << 22};
+    double loss_db[2];
+    find_losses(15000, 4000, cells, 2, loss_db);
+    assert_true(loss_db[0] > 1);
+    assert_true(loss_db[1] == loss_db[0]);
 }
