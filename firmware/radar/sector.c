@@ -259,11 +259,13 @@ static void refresh_ranges(struct lm_sector *s, struct lm_tile_cache *tiles, int
 
 /* Set the first bin into which ground leaks: that of flat ground at the beam's lower half-power
  * edge, `down` below the horizon. Nearer ground is not lit, nor is what has its range beside it.
- * Heights are below 2^26, and the sine is above 2^23: the quotient is below 2^31. */
-static void set_unlit(struct lm_sector *s, int32_t down)
+ * Bars and a malfunction can bring the axis to 135 degrees below the horizon, and the edge to 225:
+ * more than 32 bits hold. Heights are below 2^26, and the sine is above 2^23: the quotient is below
+ * 2^31. */
+static void set_unlit(struct lm_sector *s, int64_t down)
 {
     const int32_t above_m_q10 = fx_max_i32(s->grid.height_m_q10 - s->grid.reference_m_q10, 0);
-    const int32_t held = fx_clamp_i32(down, (int32_t)UNLIT_LEAST, (int32_t)FX_BAM_90);
+    const int64_t held = fx_clamp_i64(down, UNLIT_LEAST, FX_BAM_90);
     const uint32_t slant_m_q8 =
         (uint32_t)(((uint64_t)above_m_q10 << 28) / (uint32_t)fx_sin_q30((fx_bam_t)held));
     const uint32_t past_m_q8 = fx_max_u32(slant_m_q8, s->edge_m_q8) - s->edge_m_q8;
@@ -286,7 +288,7 @@ static void set_tilt(struct lm_sector *s)
     const int32_t tilt = s->tilt + lm_malfunction_bam(s->malfunctions, LM_MALFUNCTION_TILT);
     const fx_bam_t fan = set->is_pencil ? 0 : antenna->fan;
     s->fan = lm_antenna_fan_at(tilt, fan);
-    set_unlit(s, (int32_t)(fan + antenna->elevation_beam / 2) - tilt);
+    set_unlit(s, (int64_t)fan + antenna->elevation_beam / 2 - tilt);
 }
 
 void lm_sector_set_beam(struct lm_sector *s, const struct lm_beam_setting *setting)

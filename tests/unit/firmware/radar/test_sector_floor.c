@@ -241,20 +241,26 @@ static struct tiny_cell grass(void *ctx, const struct tiny_place *p)
     return (struct tiny_cell){-15, TINY_SOIL, 0};
 }
 
-TEST(nothing_leaks_into_ground_that_lies_below_the_beam)
+static struct sector_world *make_meadow(fx_bam_t fan, fx_bam_t elevation_beam)
 {
     struct tiny_spec spec = tiny_spec_at(46, 11);
     spec.cell = grass;
     spec.shift0 = 11;
     spec.rows = spec.columns = 24;
     struct sector_world *w = make_sector_world(&spec);
-    w->radar.antenna.fan = FX_BAM_DEG(8);
-    w->radar.antenna.elevation_beam = FX_BAM_DEG(3);
+    w->radar.antenna.fan = fan;
+    w->radar.antenna.elevation_beam = elevation_beam;
     w->platform =
         (struct lm_platform){.position = {w->map.db.centre_latitude, w->map.db.centre_longitude},
                              .height_m_q10 = 3000 * 1024,
                              .track = FX_BAM_DEG(50),
                              .speed_mm_s = 250000};
+    return w;
+}
+
+TEST(nothing_leaks_into_ground_that_lies_below_the_beam)
+{
+    struct sector_world *w = make_meadow(FX_BAM_DEG(8), FX_BAM_DEG(3));
     for (int fov = LM_FOV_EXP; fov <= LM_FOV_DBS1; fov++) {
         const struct lm_sector_command command = {
             .mode = LM_SECTOR_GM,
@@ -279,6 +285,30 @@ TEST(nothing_leaks_into_ground_that_lies_below_the_beam)
         const double under_db = 10 * log10(sum[1] / count[1] / (sum[0] / count[0]));
         print_message("# %s: %.1f dB under the grass\n", w->radar.fov[fov].name, under_db);
         assert_true(under_db > 35);
+    }
+    free_sector_world(w);
+}
+
+/* Bars and a malfunction of 30 degrees bring the lower edge of the widest fan to 225 degrees below
+ * the horizon. It lights what lies straight below, as one does that reaches no farther than there.
+ */
+TEST(a_beam_turned_past_straight_down_lights_what_lies_below)
+{
+    struct sector_world *w = make_meadow(FX_BAM_DEG(60), FX_BAM_DEG(60));
+    const struct lm_sector_command command = {.mode = LM_SECTOR_GM, .range_index = scale_of(10)};
+    start_sector(w, &command, NULL, NULL);
+    draw_line(w);
+    const int tilt_deg[] = {70, 0, -60, -90, -91, -135};
+    uint32_t unlit[6];
+    for (int i = 0; i < 6; i++) {
+        const struct lm_beam_setting beam = {.is_tilt_manual = true,
+                                             .tilt = (int32_t)(tilt_deg[i] * (1LL << 32) / 360)};
+        lm_sector_set_beam(&w->sector, &beam);
+        unlit[i] = w->sector.receiver.unlit;
+    }
+    assert_true(unlit[0] > unlit[1]);
+    for (int i = 2; i < 6; i++) {
+        assert_int_equal(unlit[i], unlit[1]);
     }
     free_sector_world(w);
 }
