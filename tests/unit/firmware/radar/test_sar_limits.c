@@ -93,6 +93,23 @@ TEST(what_layover_brings_in_begins_no_nearer_than_a_patch_may)
     assert_true(limited > 5 && limited < 40);
 }
 
+/* A patch of so many cells that fewer than LM_SAR_OVERSCAN_MAX have room on each side. */
+TEST(what_layover_brings_in_takes_all_the_room_that_a_wide_patch_leaves)
+{
+    const struct lm_sar_setup setup = {
+        .sea_state = LM_SEA_STATE_OF_IMAGE,
+        .relief = {.near_fall_m_q10 = 4000 * 1024, .far_rise_m_q10 = 4000 * 1024}};
+    const struct lm_sar_command c = command_of(30000, 4000, 6000);
+    struct lm_radar radar = lm_radar_default;
+    for (uint32_t room = LM_SAR_OVERSCAN_MAX - 2; room < LM_SAR_OVERSCAN_MAX + 2; room++) {
+        const uint32_t most = room < LM_SAR_OVERSCAN_MAX ? room : LM_SAR_OVERSCAN_MAX;
+        radar.sar.cells = (uint16_t)(LM_CELLS_MAX - 2 * room);
+        assert_int_equal(start(&radar, &c, &setup), LM_OK);
+        assert_int_equal(sar.overscan, most);
+        assert_int_equal(sar.traced, radar.sar.cells + 2 * most);
+    }
+}
+
 /* Ground nearer than half the antenna's height is not shown: from twice as high as the patch is
  * far, nothing of the foreground is, and the patch has no horizon to begin with. */
 TEST(nothing_before_a_patch_hides_it_from_an_antenna_far_above)
