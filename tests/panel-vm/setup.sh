@@ -41,9 +41,18 @@ kernel_package() {
         head -n 1
 }
 
+# A PC's kernel unpacks itself at each start, which takes QEMU seconds. QEMU starts the kernel within as well (PVH), where
+# it is packed by xz; one that is packed otherwise stays as it is.
+unwrap_kernel() {
+    at=$(LC_ALL=C grep -aobP -m 1 '\xFD7zXZ\x00' Image | cut -d: -f1 | head -n 1)
+    [ -z "$at" ] || ! tail -c +$((at + 1)) Image | xz -dc --single-stream >vmlinux || mv vmlinux Image
+    rm -f vmlinux
+}
+
 unpack_kernel() { # VERSION
     dpkg -x debs/linux-image-"$1"_*.deb kernel
     cp "kernel/boot/vmlinuz-$1" Image
+    [ "$arch" != amd64 ] || unwrap_kernel
     depmod -b kernel "$1"
 }
 
@@ -82,7 +91,7 @@ make_device_tree() {
 mkdir -p "$folder"
 cd "$folder"
 [ "$(cat stamp 2>/dev/null)" != "$(made_from)" ] || exit 0
-for tool in apt-get dpkg cpio depmod modprobe fdtput $qemu; do
+for tool in apt-get dpkg cpio depmod modprobe fdtput xz $qemu; do
     command -v "$tool" >/dev/null || fail "$tool is missing: make deps"
 done
 (dpkg --print-architecture; dpkg --print-foreign-architectures) | grep -qx "$arch" ||
