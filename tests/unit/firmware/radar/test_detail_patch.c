@@ -461,6 +461,31 @@ TEST(room_and_cost_are_bounded)
     assert_int_equal(patch.left_out, before + 7);
 }
 
+/* A shape is sorted into the blocks of lines that it may touch and into no other: the last block of
+ * the largest patch is the last there is. */
+TEST(a_shape_is_looked_at_in_its_own_blocks_of_lines)
+{
+    static const struct {
+        uint16_t first_line, end_line, first_block, end_block;
+    } cases[] = {
+        {0, 1, 0, 1},
+        {7, 8, 0, 1},
+        {7, 9, 0, 2},
+        {8, 24, 1, 3},
+        {LM_PATCH_LINES_MAX - 8, LM_PATCH_LINES_MAX, LM_DETAIL_BLOCKS - 1, LM_DETAIL_BLOCKS}};
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+        lm_detail_patch_clear(&patch, &map.db);
+        patch.shape[0] = (struct lm_detail_shape){.first_line = cases[i].first_line,
+                                                  .end_line = cases[i].end_line};
+        patch.shape_count = 1;
+        lm_detail_patch_close(&patch);
+        for (uint32_t b = 0; b < LM_DETAIL_BLOCKS; b++) {
+            const bool is_in = b >= cases[i].first_block && b < cases[i].end_block;
+            assert_int_equal(patch.first[b + 1] - patch.first[b], is_in);
+        }
+    }
+}
+
 /* Anything that passes the record's check may be drawn: no item reaches beyond the line. */
 TEST(hostile_items_stay_in_the_line)
 {

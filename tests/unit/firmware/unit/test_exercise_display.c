@@ -256,6 +256,35 @@ TEST(windows_meet_too)
     }
 }
 
+/* A window's antenna rests until the next quarter of a second. Who asks for a window then joins at
+ * the last line of the sweep that is over, of either direction. */
+TEST(a_window_joined_while_its_antenna_rests_begins_at_the_last_line)
+{
+    struct display d = switch_on(&plain, 0, 1);
+    begin(&d);
+    command(d.r, range_10);
+    fly(&d, 4);
+    command(d.r, cursor_ahead);
+    const struct lm_sector *s = &d.r->unit.picture.sector;
+    uint32_t joined[2] = {0, 0};
+    for (int k = 0; k < 60; k++) {
+        const double at_s = 5 + k * 0.43;
+        command(d.r, sector(LM_SECTOR_GM, LM_FOV_NORM));
+        fly(&d, at_s);
+        command(d.r, sector(LM_SECTOR_GM, LM_FOV_EXP));
+        const uint32_t lines = d.r->unit.count.lines;
+        while (d.r->unit.count.lines == lines) {
+            assert_true(d.world_us < (uint64_t)((at_s + 0.4) * S));
+            fly(&d, (double)d.world_us / S + 0.002);
+            assert_true(s->line < s->lines);
+        }
+        joined[s->is_leftward] += s->sweep != 0 && !s->is_begun;
+    }
+    print_message("# joined at rest: %u, %u\n", joined[0], joined[1]);
+    assert_true(joined[0] > 0 && joined[1] > 0);
+    free_rig(d.r);
+}
+
 /* Heights differ by less than what computes the ranges anew, when a display remembers an old one.
  */
 TEST(a_climb_leaves_no_trace_of_the_past)
