@@ -165,9 +165,20 @@ def strangers(tree, objects, allowed):
     return [f"{Path(place).relative_to(tree.scratch)}: needs {name}" for place, name in needed]
 
 
+def is_clang(tree):
+    return "clang" in tree.flags["CC"][0]
+
+
+def plain_objects(tree):
+    """The objects as they are, and beside them what gcc tells of calls. Without -fno-pie a constant table of pointers
+    would look like data."""
+    graph = [] if is_clang(tree) else ["-fcallgraph-info=su", "-ffunction-sections", "-fdata-sections"]
+    return tree.objects("plain", "-fno-pie", *graph)
+
+
 def foreign_symbols(tree):
     """Nothing from outside but the four functions that a compiler may call by itself."""
-    objects, bad = tree.objects("plain", "-fno-pie")
+    objects, bad = plain_objects(tree)
     return bad or strangers(tree, objects, MEMORY_FUNCTIONS)
 
 
@@ -287,7 +298,7 @@ def data_name(section):
 
 def call_graph(tree):
     """The graph, and what the compiler complained of."""
-    objects, bad = tree.objects("call-graph", "-fcallgraph-info=su", "-ffunction-sections", "-fdata-sections")
+    objects, bad = plain_objects(tree)
     graph = CallGraph()
     if not bad and not all(path.with_suffix(".ci").exists() for path in objects):
         bad = [f"{tree.flags['CC'][0]} left no .ci file beside its object: is it a compiler cache? Run without it"]
@@ -301,7 +312,7 @@ def call_graph(tree):
 def recursion_and_stack(tree):
     """No function calls itself in the end, each frame has a constant size, and the deepest chain fits. None when the
     compiler is clang, which does not tell."""
-    if "clang" in tree.flags["CC"][0]:
+    if is_clang(tree):
         return None
     graph, bad = call_graph(tree)
     bad += [f"{name}: may call itself" for name in graph.cycles()]
@@ -472,8 +483,7 @@ def long_functions(tree):
 
 
 def mutable_data(tree):
-    """Nothing that a second radar in the same program would share. Without -fno-pie a constant table of pointers
-    would look like data."""
-    objects, bad = tree.objects("plain", "-fno-pie")
+    """Nothing that a second radar in the same program would share."""
+    objects, bad = plain_objects(tree)
     return bad or [f"{Path(place).relative_to(tree.scratch)}: {name} can be written to"
                    for place, kind, name in symbols(objects, "--defined-only") if kind in "bBdDcCsSgG"]

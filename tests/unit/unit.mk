@@ -149,3 +149,8 @@ $(UNIT)/host-sim/wire/test_send: | $(addprefix $(O)/bin/,landmass-load landmass-
 $(UNIT)/host-sim/slots/test_plants: | $(UNIT)/host-sim/slots/test_cuts
 $(UNIT)/host-sim/programs/json/test_json $(UNIT)/host-sim/programs/progress/test_progress: | $(HOST_TOOLS)
 $(UNIT)/host-sim/programs/bus/test_forms: | $(O)/bin/landmass-bus $(GEN)/bin/bus_table
+
+# SEED and TABLES of the command line are in the test's environment.
+.PHONY: tables
+tables: $(UNIT)/firmware/unit/test_radar_extremes ## Draw radar tables by SEED=1, fly and look with each: nothing may overflow (TABLES=1000)
+	@SEED=$(or $(SEED),1) TABLES=$(or $(TABLES),1000) $<

@@ -239,12 +239,19 @@ TEST(a_table_with_one_field_at_its_end_is_drawn)
     }
 }
 
+/* A number of the environment, or else what is tried in each run. */
+static uint32_t number_of(const char *variable, uint32_t usual)
+{
+    const char *text = getenv(variable);
+    return text ? (uint32_t)strtoul(text, NULL, 10) : usual;
+}
+
 TEST(tables_with_many_fields_at_their_ends_are_drawn)
 {
-    const char *seed = getenv("SEED");
+    const uint32_t count = number_of("TABLES", RANDOM_TABLES);
     struct hs_rng rng;
-    hs_rng_seed(&rng, seed ? strtoul(seed, NULL, 10) : 1);
-    for (uint32_t turn = 0; turn < RANDOM_TABLES; turn++) {
+    hs_rng_seed(&rng, number_of("SEED", 1));
+    for (uint32_t turn = 0; turn < count; turn++) {
         struct lm_radar table = full_table();
         for (uint32_t n = 0; lm_radar_field(n); n++) {
             const struct lm_radar_field *f = lm_radar_field(n);
@@ -256,7 +263,7 @@ TEST(tables_with_many_fields_at_their_ends_are_drawn)
             }
         }
         repair(&table);
-        fly(&table, 500 + 600.0 * turn, NULL);
+        fly(&table, 500 + 600.0 * (turn % RANDOM_TABLES), NULL);
     }
 }
 
@@ -277,10 +284,9 @@ static int64_t random_number(struct hs_rng *rng, const struct lm_radar_field *f)
 
 TEST(any_table_is_drawn_with_targets_in_any_weather)
 {
-    const char *seed = getenv("SEED"), *tables = getenv("TABLES");
-    const uint32_t count = tables ? (uint32_t)strtoul(tables, NULL, 10) : RANDOM_TABLES;
+    const uint32_t count = number_of("TABLES", RANDOM_TABLES);
     struct hs_rng rng;
-    hs_rng_seed(&rng, seed ? strtoul(seed, NULL, 10) : 2);
+    hs_rng_seed(&rng, number_of("SEED", 2));
     for (uint32_t turn = 0; turn < count; turn++) {
         struct lm_radar table = full_table();
         for (uint32_t n = 0; lm_radar_field(n); n++) {
