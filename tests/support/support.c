@@ -23,6 +23,12 @@ const char *support_build_dir(void)
     return build ? build : "build/bench-linux";
 }
 
+unsigned long support_number(const char *variable, unsigned long usual)
+{
+    const char *text = getenv(variable);
+    return text ? strtoul(text, NULL, 10) : usual;
+}
+
 int support_run(const char *format, ...)
 {
     char command[4096];

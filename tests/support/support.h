@@ -13,6 +13,9 @@ int support_data_path(const char *relative, char *path, size_t size);
  * (tmp/). */
 const char *support_build_dir(void);
 
+/* A number that the environment has for a test, such as SEED, or else the usual one. */
+unsigned long support_number(const char *variable, unsigned long usual);
+
 /* Run a shell command with its output going to the test's log; returns the exit status. */
 int support_run(const char *format, ...) __attribute__((format(printf, 1, 2)));
 

@@ -3,6 +3,7 @@
  * may be given. */
 #include "check.h"
 #include "present.h"
+#include "support.h"
 #include "unit_rig.h"
 
 #include "hs/rng.h"
@@ -171,9 +172,8 @@ static uint32_t formats_seen; /* by all random flights */
 
 static struct glass *fly_at_random(uint32_t buffers, uint32_t step_px)
 {
-    const char *seed = getenv("SEED");
     struct hs_rng rng;
-    hs_rng_seed(&rng, (seed ? strtoul(seed, NULL, 10) : 1) * 64 + buffers);
+    hs_rng_seed(&rng, support_number("SEED", 1) * 64 + buffers);
     struct glass *g = begin(buffers, step_px, 333, 270); /* no multiples of a block */
     for (uint32_t i = 0; i < EVENTS; i++) {
         do_something(g, &rng);

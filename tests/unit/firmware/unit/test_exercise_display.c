@@ -275,7 +275,7 @@ TEST(a_window_joined_while_its_antenna_rests_begins_at_the_last_line)
         const uint32_t lines = d.r->unit.count.lines;
         while (d.r->unit.count.lines == lines) {
             assert_true(d.world_us < (uint64_t)((at_s + 0.4) * S));
-            fly(&d, (double)d.world_us / S + 0.002);
+            fly(&d, (double)(d.world_us + STEP_US) / S);
             assert_true(s->line < s->lines);
         }
         joined[s->is_leftward] += s->sweep != 0 && !s->is_begun;

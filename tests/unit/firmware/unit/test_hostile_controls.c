@@ -2,6 +2,7 @@
  * bound of the page is ever broken, and the glass goes on. The seed is fixed; another one may be
  * given. */
 #include "check.h"
+#include "support.h"
 #include "unit_rig.h"
 
 #include "hs/rng.h"
@@ -117,9 +118,8 @@ static void check_bounds(const struct rig *r)
 
 TEST(a_million_hostile_controls_break_no_bound)
 {
-    const char *seed = getenv("SEED");
     struct hs_rng rng;
-    hs_rng_seed(&rng, seed ? strtoul(seed, NULL, 10) : 1);
+    hs_rng_seed(&rng, support_number("SEED", 1));
     struct rig *r = make_rig();
     r->board.display.width_px = r->board.display.height_px = 256;
     assert_int_equal(lm_unit_init(&r->unit, &r->board.lent), LM_OK);

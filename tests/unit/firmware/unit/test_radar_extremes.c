@@ -7,12 +7,12 @@
 #include "check.h"
 #include "lm/image.h"
 #include "lm/radar_check.h"
+#include "support.h"
 #include "target_support.h"
 #include "unit_rig.h"
 
 #include "hs/rng.h"
 
-#include <stdlib.h>
 #include <string.h>
 
 enum { RANDOM_TABLES = 24 };
@@ -239,18 +239,11 @@ TEST(a_table_with_one_field_at_its_end_is_drawn)
     }
 }
 
-/* A number of the environment, or else what is tried in each run. */
-static uint32_t number_of(const char *variable, uint32_t usual)
-{
-    const char *text = getenv(variable);
-    return text ? (uint32_t)strtoul(text, NULL, 10) : usual;
-}
-
 TEST(tables_with_many_fields_at_their_ends_are_drawn)
 {
-    const uint32_t count = number_of("TABLES", RANDOM_TABLES);
+    const uint32_t count = (uint32_t)support_number("TABLES", RANDOM_TABLES);
     struct hs_rng rng;
-    hs_rng_seed(&rng, number_of("SEED", 1));
+    hs_rng_seed(&rng, support_number("SEED", 1));
     for (uint32_t turn = 0; turn < count; turn++) {
         struct lm_radar table = full_table();
         for (uint32_t n = 0; lm_radar_field(n); n++) {
@@ -284,9 +277,9 @@ static int64_t random_number(struct hs_rng *rng, const struct lm_radar_field *f)
 
 TEST(any_table_is_drawn_with_targets_in_any_weather)
 {
-    const uint32_t count = number_of("TABLES", RANDOM_TABLES);
+    const uint32_t count = (uint32_t)support_number("TABLES", RANDOM_TABLES);
     struct hs_rng rng;
-    hs_rng_seed(&rng, number_of("SEED", 2));
+    hs_rng_seed(&rng, support_number("SEED", 2));
     for (uint32_t turn = 0; turn < count; turn++) {
         struct lm_radar table = full_table();
         for (uint32_t n = 0; lm_radar_field(n); n++) {
